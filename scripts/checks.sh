@@ -1,0 +1,37 @@
+# Sourced by scripts/test and scripts/test-long: counted checks and test suites.
+checks=$logs/checks.tsv
+
+begin_checks() {
+  rm -f "$logs"/googletest.xml "$logs"/pytest.xml
+  : >"$checks"
+}
+
+# check NAME COMMAND...: one step that counts as one test.
+check() {
+  local outcome=passed
+  step "$@" || outcome=failed
+  printf '%s\t%s\n' "$outcome" "$1" >>"$checks"
+}
+
+# suite NAME COMMAND...: a step that writes build/logs/NAME.xml (JUnit), whose tests are counted one
+# by one. A suite that dies counts as one failure more, whatever it wrote before.
+suite() {
+  step "$@" || printf 'ended badly\t%s\n' "$1" >>"$checks"
+}
+
+build_preset() {
+  local preset=$1
+  shift
+  cmake --preset "$preset" "$@" && cmake --build --preset "$preset"
+}
+
+check_cpp_format() {
+  find core povray_gen tests bench \( -name '*.hpp' -o -name '*.cpp' \) -print0 |
+    xargs -0 clang-format-16 --dry-run -Werror
+}
+
+# Prints failures, skips with their reasons, and the closing line; exits with 1 if anything failed.
+end_checks() {
+  .venv/bin/python scripts/count_tests.py "$checks" "$logs/googletest.xml" "$logs/pytest.xml"
+  exit
+}

@@ -1,0 +1,84 @@
+"""The scripts that users and CI call: setup's promises and the closing line's arithmetic."""
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from repository import ROOT
+
+
+def setup(**environment: str) -> subprocess.CompletedProcess:
+    return subprocess.run(
+        [ROOT / "scripts/setup"], env=os.environ | environment, capture_output=True, text=True,
+        stdin=subprocess.DEVNULL,
+    )  # fmt: skip
+
+
+def test_second_setup_is_quick_and_does_nothing():
+    begun = time.monotonic()
+    done = setup()
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert time.monotonic() - begun < 10
+    assert len(done.stdout.splitlines()) == 1
+
+
+@pytest.mark.parametrize("system", ["ID=debian\nVERSION_ID=13\n", "ID=ubuntu\n", ""])
+def test_setup_stops_on_another_system(system, tmp_path):
+    release = tmp_path / "os-release"
+    release.write_text(system)
+    done = setup(SARDF_OS_RELEASE=str(release))
+    assert done.returncode == 1
+    assert done.stdout == ""
+    assert "prepares only Debian 12. Nothing was changed." in done.stderr
+
+
+GOOGLETEST = """<testsuites><testsuite name="Box">
+  <testcase name="Inside" classname="Box" status="run" result="completed"/>
+  <testcase name="Gpu" classname="Box" status="run" result="skipped">
+    <skipped message="no device"/></testcase>
+  <testcase name="DISABLED_Old" classname="Box" status="notrun" result="suppressed"/>
+</testsuite></testsuites>"""
+PYTEST = """<testsuites><testsuite name="pytest">
+  <testcase classname="test_a" name="test_one"/>
+  <testcase classname="test_a" name="test_two">
+    <failure message="assert 1 == 2">x</failure></testcase>
+  <testcase classname="test_a" name="test_three"><error message="no fixture">x</error></testcase>
+</testsuite></testsuites>"""
+
+
+def count(folder: Path, checks: str, googletest: str, pytest_: str) -> tuple[int, list[str]]:
+    for name, text in (
+        ("checks.tsv", checks),
+        ("googletest.xml", googletest),
+        ("pytest.xml", pytest_),
+    ):
+        if text:
+            (folder / name).write_text(text)
+    names = [folder / name for name in ("checks.tsv", "googletest.xml", "pytest.xml")]
+    done = subprocess.run(
+        [sys.executable, ROOT / "scripts/count_tests.py", *names], capture_output=True, text=True
+    )
+    return done.returncode, done.stdout.splitlines()
+
+
+def test_closing_line_adds_up(tmp_path):
+    checks = "passed\truff\nfailed\tclang-format\nended badly\tpytest\n"
+    status, lines = count(tmp_path, checks, GOOGLETEST, PYTEST)
+    assert status == 1
+    assert lines[-1] == "3 passed, 3 failed, 2 skipped"
+    assert "skipped: Box.Gpu: no device" in lines
+    assert "skipped: Box.DISABLED_Old: disabled" in lines
+    assert "failed: test_a.test_two: assert 1 == 2" in lines
+
+
+def test_a_suite_that_died_is_a_failure(tmp_path):
+    good = PYTEST.replace("failure", "system-out").replace("error", "system-out")
+    assert count(tmp_path, "passed\truff\n", GOOGLETEST, good)[0] == 0
+    status, lines = count(tmp_path, "ended badly\tpytest\n", GOOGLETEST, good)
+    assert (status, lines[-1]) == (1, "4 passed, 1 failed, 2 skipped")
+    (tmp_path / "googletest.xml").unlink()
+    status, lines = count(tmp_path, "ended badly\tgoogletest\n", "", good)
+    assert (status, lines[-1]) == (1, "3 passed, 1 failed, 0 skipped")

@@ -1,0 +1,74 @@
+// The bulk kernels of an operation and the choice of the instruction set at run time.
+//
+// kernels_avx2.cpp and kernels_avx512.cpp instantiate make_kernels for the whole operation list
+// with wider lanes; an operation outside the list (a test's) runs on the lanes of its own source
+// file.
+#pragma once
+
+#include <array>
+#include <string>
+#include <utility>
+
+#include "sardf/numbers/gradient.hpp"
+#include "sardf/numbers/lanes.hpp"
+#include "sardf/operation.hpp"
+
+namespace sardf {
+
+enum class InstructionSet { baseline, avx2, avx512 };
+
+/// The widest set that this processor has and that $SARDF_INSTRUCTION_SET ("baseline", "avx2",
+/// "avx512") allows; decided once. A value that is none of the three is an Error.
+InstructionSet instruction_set();
+std::string instruction_set_name(InstructionSet set);
+
+template <class Op, class Isa>
+struct KernelsOf {
+  static constexpr int arity = Op::arity;
+  using L = Lanes<Isa>;
+
+  template <class T, size_t... I>
+  static T call(const Op& op, const T* in, std::index_sequence<I...>) {
+    return op.template eval<T>(in[I]...);
+  }
+
+  static void value(const void* object, const float* const* in, float* out, size_t n) {
+    const Op& op = *static_cast<const Op*>(object);
+    for (size_t i = 0; i < n; i += L::width) {
+      std::array<L, arity> at;
+      for (int k = 0; k < arity; ++k) at[k] = L::load(in[k] + i);
+      call(op, at.data(), std::make_index_sequence<arity>()).store(out + i);
+    }
+  }
+
+  static void partials(const void* object, const float* const* in, float* out,
+                       float* const* partial, size_t n) {
+    using Dual = Gradient<L, arity>;
+    const Op& op = *static_cast<const Op*>(object);
+    for (size_t i = 0; i < n; i += L::width) {
+      std::array<Dual, arity> at;
+      for (int k = 0; k < arity; ++k) at[k] = Dual::variable(L::load(in[k] + i), k);
+      const Dual result = call(op, at.data(), std::make_index_sequence<arity>());
+      result.v.store(out + i);
+      for (int k = 0; k < arity; ++k) result.d[k].store(partial[k] + i);
+    }
+  }
+
+  static constexpr Kernels table{&value, &partials};
+};
+
+/// Kernels of a listed operation for an instruction set; nullptr where this build has none or the
+/// operation is not in the list.
+const Kernels* listed_kernels(InstructionSet set, const std::string& operation);
+
+/// The kernels of Op that this machine runs.
+template <class Op>
+const Kernels& best_kernels() {
+  static const Kernels& best = [&]() -> const Kernels& {
+    const Kernels* listed = listed_kernels(instruction_set(), Op::name);
+    return listed ? *listed : KernelsOf<Op, Baseline>::table;
+  }();
+  return best;
+}
+
+}  // namespace sardf

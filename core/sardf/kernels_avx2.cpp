@@ -1,0 +1,10 @@
+#include "sardf/kernel_table.hpp"
+
+namespace sardf {
+
+const KernelTable& avx2_kernels() {
+  static const KernelTable table = kernel_table<Avx2>();
+  return table;
+}
+
+}  // namespace sardf

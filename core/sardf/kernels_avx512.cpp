@@ -1,0 +1,10 @@
+#include "sardf/kernel_table.hpp"
+
+namespace sardf {
+
+const KernelTable& avx512_kernels() {
+  static const KernelTable table = kernel_table<Avx512>();
+  return table;
+}
+
+}  // namespace sardf

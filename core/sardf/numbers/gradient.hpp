@@ -1,0 +1,155 @@
+// The number type Gradient: a value and N partial derivatives, over any other number type.
+//
+// At a kink (min, max, abs, select) the derivative is that of the branch that gives the value, the
+// second argument's where both do.
+#pragma once
+
+#include <array>
+
+#include "sardf/numbers/interval.hpp"
+#include "sardf/numbers/real.hpp"
+
+namespace sardf {
+
+template <class T, int N>
+struct Gradient {
+  T v;
+  std::array<T, N> d;
+
+  Gradient() = default;
+  Gradient(double a) : v(a) { d.fill(T(0.0)); }
+  explicit Gradient(const T& a)
+    requires(!std::is_same_v<T, double>)
+      : v(a) {
+    d.fill(T(0.0));
+  }
+  static Gradient variable(const T& a, int index) {
+    Gradient g;
+    g.v = a;
+    g.d.fill(T(0.0));
+    g.d[index] = T(1.0);
+    return g;
+  }
+
+  /// The value `value` whose derivative is slope times the derivative of a.
+  static Gradient chain(const Gradient& a, const T& value, const T& slope) {
+    Gradient g;
+    g.v = value;
+    for (int i = 0; i < N; ++i) g.d[i] = slope * a.d[i];
+    return g;
+  }
+  static Gradient chain(const Gradient& a, const Gradient& b, const T& value, const T& by_a,
+                        const T& by_b) {
+    Gradient g;
+    g.v = value;
+    for (int i = 0; i < N; ++i) g.d[i] = by_a * a.d[i] + by_b * b.d[i];
+    return g;
+  }
+
+  friend Gradient operator+(const Gradient& a, const Gradient& b) {
+    Gradient g;
+    g.v = a.v + b.v;
+    for (int i = 0; i < N; ++i) g.d[i] = a.d[i] + b.d[i];
+    return g;
+  }
+  friend Gradient operator-(const Gradient& a, const Gradient& b) {
+    Gradient g;
+    g.v = a.v - b.v;
+    for (int i = 0; i < N; ++i) g.d[i] = a.d[i] - b.d[i];
+    return g;
+  }
+  friend Gradient operator-(const Gradient& a) {
+    Gradient g;
+    g.v = -a.v;
+    for (int i = 0; i < N; ++i) g.d[i] = -a.d[i];
+    return g;
+  }
+  friend Gradient operator*(const Gradient& a, const Gradient& b) {
+    return chain(a, b, a.v * b.v, b.v, a.v);
+  }
+  friend Gradient operator/(const Gradient& a, const Gradient& b) {
+    const T quotient = a.v / b.v;
+    return chain(a, b, quotient, T(1.0) / b.v, -(quotient / b.v));
+  }
+  friend auto operator<(const Gradient& a, const Gradient& b) { return a.v < b.v; }
+  friend auto operator<=(const Gradient& a, const Gradient& b) { return a.v <= b.v; }
+  friend auto operator>(const Gradient& a, const Gradient& b) { return a.v > b.v; }
+  friend auto operator>=(const Gradient& a, const Gradient& b) { return a.v >= b.v; }
+
+  template <class Mask>
+  friend Gradient select(const Mask& mask, const Gradient& a, const Gradient& b) {
+    Gradient g;
+    g.v = select(mask, a.v, b.v);
+    for (int i = 0; i < N; ++i) g.d[i] = select(mask, a.d[i], b.d[i]);
+    return g;
+  }
+  friend Gradient min(const Gradient& a, const Gradient& b) {
+    Gradient g = select(a.v < b.v, a, b);
+    g.v = min(a.v, b.v);
+    return g;
+  }
+  friend Gradient max(const Gradient& a, const Gradient& b) {
+    Gradient g = select(a.v > b.v, a, b);
+    g.v = max(a.v, b.v);
+    return g;
+  }
+  friend Gradient abs(const Gradient& a) {
+    return chain(a, abs(a.v), select(a.v < T(0.0), T(-1.0), T(1.0)));
+  }
+  friend Gradient square(const Gradient& a) { return chain(a, square(a.v), a.v + a.v); }
+  friend Gradient freeze(const Gradient& a) {
+    Gradient g(0.0);
+    g.v = freeze(a.v);
+    return g;
+  }
+  friend Gradient sqrt(const Gradient& a) {
+    const T root = sqrt(a.v);
+    return chain(a, root, T(0.5) / root);
+  }
+  friend Gradient length(const Gradient& a, const Gradient& b) {
+    const T whole = length(a.v, b.v);
+    return chain(a, b, whole, cosine(a.v, whole), cosine(b.v, whole));
+  }
+  friend Gradient length(const Gradient& a, const Gradient& b, const Gradient& c) {
+    const T whole = length(a.v, b.v, c.v);
+    const T i = cosine(a.v, whole), j = cosine(b.v, whole), k = cosine(c.v, whole);
+    Gradient g;
+    g.v = whole;
+    for (int n = 0; n < N; ++n) g.d[n] = i * a.d[n] + j * b.d[n] + k * c.d[n];
+    return g;
+  }
+  friend Gradient exp(const Gradient& a) {
+    const T e = exp(a.v);
+    return chain(a, e, e);
+  }
+  friend Gradient log(const Gradient& a) { return chain(a, log(a.v), T(1.0) / a.v); }
+  friend Gradient sin(const Gradient& a) { return chain(a, sin(a.v), cos(a.v)); }
+  friend Gradient cos(const Gradient& a) { return chain(a, cos(a.v), -sin(a.v)); }
+  friend Gradient tan(const Gradient& a) {
+    const T t = tan(a.v);
+    return chain(a, t, T(1.0) + square(t));
+  }
+  friend Gradient asin(const Gradient& a) {
+    return chain(a, asin(a.v), T(1.0) / sqrt(T(1.0) - square(a.v)));
+  }
+  friend Gradient acos(const Gradient& a) {
+    return chain(a, acos(a.v), T(-1.0) / sqrt(T(1.0) - square(a.v)));
+  }
+  friend Gradient atan2(const Gradient& y, const Gradient& x) {
+    const T squared = square(x.v) + square(y.v);
+    return chain(y, x, atan2(y.v, x.v), x.v / squared, -(y.v / squared));
+  }
+  friend Gradient floor(const Gradient& a) {
+    Gradient g(0.0);
+    g.v = floor(a.v);
+    return g;
+  }
+  friend Gradient pow(const Gradient& a, const Gradient& b) {
+    const T power = pow(a.v, b.v);
+    // The derivative by a constant exponent is never needed, and ln of a negative base is none.
+    const T by_b = select(a.v > T(0.0), power * log(max(a.v, T(1e-300))), T(0.0));
+    return chain(a, b, power, b.v * pow(a.v, b.v - T(1.0)), by_b);
+  }
+};
+
+}  // namespace sardf

@@ -1,0 +1,90 @@
+// The number type Interval: outward rounded enclosures, [lo, hi] holds every value over a box.
+#pragma once
+
+#include <cfloat>
+#include <limits>
+
+#include "sardf/numbers/real.hpp"
+
+namespace sardf {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// A value rounded towards -inf (+inf) by at least `ulps` units in the last place. Overflow is
+/// undone: the largest finite number stands for any larger one.
+inline double rounded_down(double a, double ulps = 1) {
+  if (a == infinity) return DBL_MAX;
+  return a == -infinity ? a : a - (abs(a) * ulps * 0x1p-52 + ulps * 0x1p-1074);
+}
+inline double rounded_up(double a, double ulps = 1) { return -rounded_down(-a, ulps); }
+
+/// What is known of a comparison of two intervals.
+struct IntervalMask {
+  bool can_hold;
+  bool can_fail;
+  friend IntervalMask operator&&(IntervalMask a, IntervalMask b) {
+    return {a.can_hold && b.can_hold, a.can_fail || b.can_fail};
+  }
+  friend IntervalMask operator||(IntervalMask a, IntervalMask b) {
+    return {a.can_hold || b.can_hold, a.can_fail && b.can_fail};
+  }
+  friend IntervalMask operator!(IntervalMask a) { return {a.can_fail, a.can_hold}; }
+};
+
+struct Interval {
+  double lo = 0;
+  double hi = 0;
+
+  Interval() = default;
+  Interval(double a) : lo(a), hi(a) {}
+  Interval(double low, double high) : lo(low), hi(high) {}
+
+  static Interval all() { return {-infinity, infinity}; }
+  bool contains(double a) const { return lo <= a && a <= hi; }
+  double magnitude() const { return max(abs(lo), abs(hi)); }
+
+  friend bool operator==(const Interval&, const Interval&) = default;
+  friend Interval operator+(Interval a, Interval b) {
+    return {rounded_down(a.lo + b.lo), rounded_up(a.hi + b.hi)};
+  }
+  friend Interval operator-(Interval a) { return {-a.hi, -a.lo}; }
+  friend Interval operator-(Interval a, Interval b) { return a + -b; }
+  friend Interval operator*(Interval a, Interval b);
+  friend Interval operator/(Interval a, Interval b);
+  friend IntervalMask operator<(Interval a, Interval b) { return {a.lo < b.hi, !(a.hi < b.lo)}; }
+  friend IntervalMask operator<=(Interval a, Interval b) { return {a.lo <= b.hi, !(a.hi <= b.lo)}; }
+  friend IntervalMask operator>(Interval a, Interval b) { return b < a; }
+  friend IntervalMask operator>=(Interval a, Interval b) { return b <= a; }
+};
+
+inline Interval hull(Interval a, Interval b) { return {min(a.lo, b.lo), max(a.hi, b.hi)}; }
+/// The common part of two enclosures of the same value.
+inline Interval intersect(Interval a, Interval b) { return {max(a.lo, b.lo), min(a.hi, b.hi)}; }
+inline Interval select(IntervalMask mask, Interval a, Interval b) {
+  return !mask.can_fail ? a : !mask.can_hold ? b : hull(a, b);
+}
+template <class T, class Full>
+T shortcut(IntervalMask mask, const T& cheap, Full full) {
+  return !mask.can_fail ? cheap : select(mask, cheap, full());
+}
+
+inline Interval min(Interval a, Interval b) { return {min(a.lo, b.lo), min(a.hi, b.hi)}; }
+inline Interval max(Interval a, Interval b) { return {max(a.lo, b.lo), max(a.hi, b.hi)}; }
+inline Interval freeze(Interval a) { return a; }
+Interval abs(Interval a);
+Interval square(Interval a);
+Interval cosine(Interval a, Interval b);
+/// Square root of the part of the interval that is not negative.
+Interval sqrt(Interval a);
+Interval exp(Interval a);
+Interval log(Interval a);
+Interval sin(Interval a);
+Interval cos(Interval a);
+Interval tan(Interval a);
+Interval asin(Interval a);
+Interval acos(Interval a);
+Interval atan2(Interval y, Interval x);
+Interval floor(Interval a);
+Interval pow(Interval a, Interval b);
+
+}  // namespace sardf

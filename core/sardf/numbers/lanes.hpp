@@ -1,0 +1,189 @@
+// The number type for bulk evaluation: several floats at once.
+//
+// One class for each instruction set, so that the templates instantiated for it are distinct types:
+// code compiled for AVX-512 can never be merged by the linker into the baseline's.
+#pragma once
+
+#include <cmath>
+#include <cstring>
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+#include "sardf/numbers/real.hpp"
+
+namespace sardf {
+
+struct Baseline {
+  static constexpr int width = 4;
+  typedef float Floats __attribute__((vector_size(16)));
+  typedef int Ints __attribute__((vector_size(16)));
+};
+struct Avx2 {
+  static constexpr int width = 8;
+  typedef float Floats __attribute__((vector_size(32)));
+  typedef int Ints __attribute__((vector_size(32)));
+};
+struct Avx512 {
+  static constexpr int width = 16;
+  typedef float Floats __attribute__((vector_size(64)));
+  typedef int Ints __attribute__((vector_size(64)));
+};
+
+template <class Isa>
+struct LanesMask {
+  using Bits = typename Isa::Ints;
+  Bits bits;
+  friend LanesMask operator&&(LanesMask a, LanesMask b) { return {a.bits & b.bits}; }
+  friend LanesMask operator||(LanesMask a, LanesMask b) { return {a.bits | b.bits}; }
+  friend LanesMask operator!(LanesMask a) { return {~a.bits}; }
+};
+
+template <class Isa>
+bool all(LanesMask<Isa> mask) {
+#if defined(__AVX512DQ__)
+  if constexpr (Isa::width == 16) return _mm512_movepi32_mask((__m512i)mask.bits) == 0xFFFF;
+#endif
+#if defined(__AVX2__)
+  if constexpr (Isa::width == 8) return _mm256_movemask_ps((__m256)mask.bits) == 0xFF;
+#endif
+#if defined(__SSE2__)
+  if constexpr (Isa::width == 4) return _mm_movemask_ps((__m128)mask.bits) == 0xF;
+#endif
+  int both = -1;
+  for (int i = 0; i < Isa::width; ++i) both &= mask.bits[i];
+  return both != 0;
+}
+
+template <class Isa>
+struct Lanes {
+  static constexpr int width = Isa::width;
+  using Mask = LanesMask<Isa>;
+  using Values = typename Isa::Floats;
+  Values v;
+
+  Lanes() = default;
+  Lanes(double a) : v(float(a) - Values{}) {}
+  explicit Lanes(Values values) : v(values) {}
+
+  static Lanes load(const float* from) {
+    Lanes a;
+    std::memcpy(&a.v, from, sizeof a.v);
+    return a;
+  }
+  void store(float* to) const { std::memcpy(to, &v, sizeof v); }
+
+  template <class F>
+  static Lanes each(const Lanes& a, F f) {
+    Lanes out;
+    for (int i = 0; i < width; ++i) out.v[i] = f(a.v[i]);
+    return out;
+  }
+  template <class F>
+  static Lanes each(const Lanes& a, const Lanes& b, F f) {
+    Lanes out;
+    for (int i = 0; i < width; ++i) out.v[i] = f(a.v[i], b.v[i]);
+    return out;
+  }
+
+  friend Lanes operator+(Lanes a, Lanes b) { return Lanes(a.v + b.v); }
+  friend Lanes operator-(Lanes a, Lanes b) { return Lanes(a.v - b.v); }
+  friend Lanes operator*(Lanes a, Lanes b) { return Lanes(a.v * b.v); }
+  friend Lanes operator/(Lanes a, Lanes b) { return Lanes(a.v / b.v); }
+  friend Lanes operator-(Lanes a) { return Lanes(-a.v); }
+  friend Mask operator<(Lanes a, Lanes b) { return {a.v < b.v}; }
+  friend Mask operator<=(Lanes a, Lanes b) { return {a.v <= b.v}; }
+  friend Mask operator>(Lanes a, Lanes b) { return {a.v > b.v}; }
+  friend Mask operator>=(Lanes a, Lanes b) { return {a.v >= b.v}; }
+  friend Lanes select(Mask m, Lanes a, Lanes b) { return Lanes(m.bits ? a.v : b.v); }
+
+  friend Lanes min(Lanes a, Lanes b) {
+#if defined(__AVX512F__)
+    if constexpr (width == 16) return Lanes((Values)_mm512_min_ps((__m512)a.v, (__m512)b.v));
+#endif
+#if defined(__AVX__)
+    if constexpr (width == 8) return Lanes((Values)_mm256_min_ps((__m256)a.v, (__m256)b.v));
+#endif
+#if defined(__SSE2__)
+    if constexpr (width == 4) return Lanes((Values)_mm_min_ps((__m128)a.v, (__m128)b.v));
+#endif
+    return Lanes(a.v < b.v ? a.v : b.v);
+  }
+  friend Lanes max(Lanes a, Lanes b) {
+#if defined(__AVX512F__)
+    if constexpr (width == 16) return Lanes((Values)_mm512_max_ps((__m512)a.v, (__m512)b.v));
+#endif
+#if defined(__AVX__)
+    if constexpr (width == 8) return Lanes((Values)_mm256_max_ps((__m256)a.v, (__m256)b.v));
+#endif
+#if defined(__SSE2__)
+    if constexpr (width == 4) return Lanes((Values)_mm_max_ps((__m128)a.v, (__m128)b.v));
+#endif
+    return Lanes(a.v > b.v ? a.v : b.v);
+  }
+  friend Lanes sqrt(Lanes a) {
+#if defined(__AVX512F__)
+    if constexpr (width == 16) return Lanes((Values)_mm512_sqrt_ps((__m512)a.v));
+#endif
+#if defined(__AVX__)
+    if constexpr (width == 8) return Lanes((Values)_mm256_sqrt_ps((__m256)a.v));
+#endif
+#if defined(__SSE2__)
+    if constexpr (width == 4) return Lanes((Values)_mm_sqrt_ps((__m128)a.v));
+#endif
+    return each(a, [](float s) { return std::sqrt(s); });
+  }
+  friend Lanes floor(Lanes a) {
+#if defined(__AVX512F__)
+    if constexpr (width == 16) return Lanes((Values)_mm512_floor_ps((__m512)a.v));
+#endif
+#if defined(__AVX__)
+    if constexpr (width == 8) return Lanes((Values)_mm256_floor_ps((__m256)a.v));
+#endif
+    return each(a, [](float s) { return std::floor(s); });
+  }
+  friend Lanes abs(Lanes a) {
+    typename Mask::Bits bits = (typename Mask::Bits)a.v & 0x7FFFFFFF;
+    return Lanes((Values)bits);
+  }
+  friend Lanes square(Lanes a) { return a * a; }
+  friend Lanes freeze(Lanes a) { return a; }
+  friend Lanes cosine(Lanes a, Lanes b) { return a / b; }
+
+  // The C library's scalar functions: the same result for every instruction set.
+  friend Lanes exp(Lanes a) {
+    return each(a, [](float s) { return std::exp(s); });
+  }
+  friend Lanes log(Lanes a) {
+    return each(a, [](float s) { return std::log(s); });
+  }
+  friend Lanes sin(Lanes a) {
+    return each(a, [](float s) { return std::sin(s); });
+  }
+  friend Lanes cos(Lanes a) {
+    return each(a, [](float s) { return std::cos(s); });
+  }
+  friend Lanes tan(Lanes a) {
+    return each(a, [](float s) { return std::tan(s); });
+  }
+  friend Lanes asin(Lanes a) {
+    return each(a, [](float s) { return std::asin(s); });
+  }
+  friend Lanes acos(Lanes a) {
+    return each(a, [](float s) { return std::acos(s); });
+  }
+  friend Lanes atan2(Lanes a, Lanes b) {
+    return each(a, b, [](float s, float t) { return std::atan2(s, t); });
+  }
+  friend Lanes pow(Lanes a, Lanes b) {
+    return each(a, b, [](float s, float t) { return std::pow(s, t); });
+  }
+};
+
+template <class Isa, class T, class Full>
+T shortcut(LanesMask<Isa> mask, const T& cheap, Full full) {
+  return all(mask) ? cheap : select(mask, cheap, full());
+}
+
+}  // namespace sardf

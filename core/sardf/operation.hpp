@@ -1,0 +1,86 @@
+// An operation as the engine sees it: the type-erased form of one struct of the operation list.
+//
+// OperationOf<Op> (operation_of.hpp) derives everything here from Op::eval<T>.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sardf/numbers/interval.hpp"
+#include "sardf/numbers/trace.hpp"
+
+namespace sardf {
+
+/// Most inputs an operation has.
+inline constexpr int max_arity = 4;
+
+/// Where an operation appears.
+enum class Kind {
+  solid,     // signed field in space: a constructor
+  plane,     // signed field of x and y: a constructor
+  feature,   // unsigned distance to a set of points: a constructor
+  function,  // a function of values: its name is a word of the formula language
+  internal,  // what constructors build with
+};
+
+struct OperationInfo {
+  std::string name;
+  Kind kind;
+  int arity;
+  std::string doc;
+};
+
+/// Certified bounds of a field over a box: its values, its partial derivatives by x, y, z, and the
+/// length of its gradient.
+struct Slope {
+  Interval value;
+  std::array<Interval, 3> partial;
+  double length = 0;
+};
+
+/// Bulk evaluation of n points, n a multiple of 16. `in` and `out` are arrays of n.
+struct Kernels {
+  using Value = void (*)(const void* op, const float* const* in, float* out, size_t n);
+  /// Also the derivatives by each input: partial[i] is an array of n.
+  using Partials = void (*)(const void* op, const float* const* in, float* out,
+                            float* const* partial, size_t n);
+  Value value = nullptr;
+  Partials partials = nullptr;
+};
+
+class Operation {
+ public:
+  virtual ~Operation() = default;
+
+  virtual const OperationInfo& info() const = 0;
+  /// The parameters as numbers; two operations of one name and equal numbers are the same.
+  virtual const std::vector<double>& numbers() const = 0;
+
+  virtual double evaluate(const double* in) const = 0;
+  virtual void evaluate(const double* const* in, double* out, size_t n) const = 0;
+  virtual void partials(const double* const* in, double* out, double* const* partial,
+                        size_t n) const = 0;
+  virtual const Kernels& kernels() const = 0;
+  /// The object that the kernels take.
+  virtual const void* object() const = 0;
+
+  /// Encloses the double result over all inputs in the intervals.
+  virtual Interval interval(const Interval* in) const = 0;
+  virtual Slope slope(const Slope* in) const = 0;
+  /// Bound of |result - result with min/max in place of the blend| for equal inputs.
+  virtual double blend_error() const = 0;
+  /// Bound of the sum of the absolute partial derivatives over all inputs in the intervals.
+  virtual double gain(const Interval* in) const = 0;
+  /// Whether it is the exact Euclidean distance in its inputs.
+  virtual bool is_distance() const = 0;
+
+  /// Records the formula; the result's step is trace.result.
+  virtual void record(Trace& trace) const = 0;
+};
+
+using OperationPointer = std::shared_ptr<const Operation>;
+
+}  // namespace sardf

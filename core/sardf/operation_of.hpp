@@ -1,0 +1,212 @@
+// Everything about an operation, derived from one struct.
+//
+// The struct has:
+//   static constexpr const char* name, *doc;  static constexpr Kind kind;  static constexpr int
+//   arity; template <class T> T eval(T, ...) const;      the formula, in `arity` arguments template
+//   <class V> static void parameters(V& v);   v(Parameter{...}, &Op::member), each member
+// and may have:
+//   void prepare();              derived members, after the parameters are set; throws Error
+//   static constexpr bool distance = true;         exact Euclidean distance in its inputs
+//   static constexpr std::array<int, arity> monotone;   sign of each partial derivative everywhere
+//   double gain(Interval, ...) const;              bound of the sum of |partials|
+//   double blend_error() const;                    bound of |this - its min/max counterpart|
+//   static constexpr double rounding = 16;         rounding error, in ulps of the largest magnitude
+#pragma once
+
+#include <algorithm>
+#include <utility>
+
+#include "sardf/error.hpp"
+#include "sardf/kernels.hpp"
+#include "sardf/numbers/gradient.hpp"
+#include "sardf/operation.hpp"
+#include "sardf/parameter.hpp"
+
+namespace sardf {
+
+template <class Op, class T, size_t... I>
+T apply(const Op& op, const T* in, std::index_sequence<I...>) {
+  return op.template eval<T>(in[I]...);
+}
+template <class Op, class T>
+T apply(const Op& op, const T* in) {
+  return apply(op, in, std::make_index_sequence<Op::arity>());
+}
+
+template <class Op>
+constexpr bool is_monotone = requires { Op::monotone; };
+template <class Op>
+constexpr bool is_exact_distance = requires { Op::distance; };
+
+/// The largest singular value of the 3-row matrix of intervals, from above: the square root of the
+/// greatest row sum of |JᵀJ|, which is tight for rotations and scalings.
+double spectral_bound(std::span<const Slope> rows);
+
+template <class Op>
+class OperationOf final : public Operation {
+ public:
+  static constexpr int arity = Op::arity;
+  using Dual = Gradient<double, arity>;
+  using DualInterval = Gradient<Interval, arity>;
+
+  explicit OperationOf(Op op) : op_(std::move(op)) {
+    if constexpr (requires { op_.prepare(); }) op_.prepare();
+    auto append = [&](const Parameter&, auto member) { append_numbers(numbers_, op_.*member); };
+    if constexpr (requires { Op::parameters(append); }) Op::parameters(append);
+    for (double a : numbers_) magnitude_ = std::max(magnitude_, std::abs(a));
+  }
+
+  static const OperationInfo& static_info() {
+    static const OperationInfo info{Op::name, Op::kind, Op::arity, Op::doc};
+    return info;
+  }
+  const OperationInfo& info() const override { return static_info(); }
+  const std::vector<double>& numbers() const override { return numbers_; }
+  const void* object() const override { return &op_; }
+  const Kernels& kernels() const override { return best_kernels<Op>(); }
+
+  double evaluate(const double* in) const override { return apply(op_, in); }
+
+  void evaluate(const double* const* in, double* out, size_t n) const override {
+    for (size_t i = 0; i < n; ++i) {
+      std::array<double, arity> at;
+      for (int k = 0; k < arity; ++k) at[k] = in[k][i];
+      out[i] = apply(op_, at.data());
+    }
+  }
+
+  void partials(const double* const* in, double* out, double* const* partial,
+                size_t n) const override {
+    for (size_t i = 0; i < n; ++i) {
+      std::array<Dual, arity> at;
+      for (int k = 0; k < arity; ++k) at[k] = Dual::variable(in[k][i], k);
+      const Dual result = apply(op_, at.data());
+      out[i] = result.v;
+      for (int k = 0; k < arity; ++k) partial[k][i] = result.d[k];
+    }
+  }
+
+  Interval interval(const Interval* in) const override {
+    if constexpr (is_monotone<Op>) return at_end_points(in);
+    const Interval natural = apply(op_, in);
+    if constexpr (is_exact_distance<Op>) return intersect(natural, around_centre(in));
+    return natural;
+  }
+
+  Slope slope(const Slope* in) const override {
+    std::array<Interval, arity> values;
+    for (int k = 0; k < arity; ++k) values[k] = in[k].value;
+    const std::array<Interval, arity> by = local_partials(values.data());
+    Slope out;
+    out.value = interval(values.data());
+    double sum = 0, steepest = 0;
+    for (int k = 0; k < arity; ++k) {
+      for (int axis = 0; axis < 3; ++axis) {
+        out.partial[axis] = out.partial[axis] + by[k] * in[k].partial[axis];
+      }
+      sum = rounded_up(sum + rounded_up(times(by[k].magnitude(), in[k].length)));
+      if (by[k].magnitude() > 0) steepest = max(steepest, in[k].length);
+    }
+    const Interval norm = sardf::length(out.partial[0], out.partial[1], out.partial[2]);
+    out.length = min(min(norm.hi, sum), rounded_up(times(gain(values.data()), steepest)));
+    if constexpr (is_exact_distance<Op>) {
+      out.length = min(out.length, spectral_bound({in, size_t(arity)}));
+    }
+    return out;
+  }
+
+  double gain(const Interval* in) const override {
+    if constexpr (requires { gain_of(op_, in, std::make_index_sequence<arity>()); }) {
+      return gain_of(op_, in, std::make_index_sequence<arity>());
+    }
+    double sum = 0;
+    for (const Interval& by : local_partials(in)) sum = rounded_up(sum + by.magnitude());
+    return sum;
+  }
+
+  double blend_error() const override {
+    if constexpr (requires { op_.blend_error(); }) return op_.blend_error();
+    return 0;
+  }
+  bool is_distance() const override { return is_exact_distance<Op>; }
+
+  void record(Trace& trace) const override {
+    std::array<Text, arity> in;
+    for (int k = 0; k < arity; ++k) in[k] = Text::at(k);
+    trace.result = apply(op_, in.data()).step;
+  }
+
+ private:
+  static double times(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
+
+  double rounding_error(const double* at, double result) const {
+    double magnitude = std::max(magnitude_, std::abs(result));
+    for (int k = 0; k < arity; ++k) magnitude = std::max(magnitude, std::abs(at[k]));
+    double ulps = 16;
+    if constexpr (requires { Op::rounding; }) ulps = Op::rounding;
+    return magnitude * ulps * 0x1p-52;
+  }
+
+  Interval at_end_points(const Interval* in) const {
+    if constexpr (is_monotone<Op>) {
+      std::array<double, arity> low, high;
+      for (int k = 0; k < arity; ++k) {
+        low[k] = Op::monotone[k] > 0 ? in[k].lo : in[k].hi;
+        high[k] = Op::monotone[k] > 0 ? in[k].hi : in[k].lo;
+      }
+      const double lo = apply(op_, low.data()), hi = apply(op_, high.data());
+      // An infinite end can make the formula inf - inf: nothing is known there.
+      return {std::isnan(lo) ? -infinity : rounded_down(lo - rounding_error(low.data(), lo)),
+              std::isnan(hi) ? infinity : rounded_up(hi + rounding_error(high.data(), hi))};
+    }
+    return Interval::all();
+  }
+
+  Interval around_centre(const Interval* in) const {
+    std::array<double, arity> centre;
+    double squared = 0;
+    for (int k = 0; k < arity; ++k) {
+      centre[k] = in[k].lo + 0.5 * (in[k].hi - in[k].lo);
+      const double half = max(in[k].hi - centre[k], centre[k] - in[k].lo);
+      squared += half * half;
+    }
+    const double f = apply(op_, centre.data());
+    const double radius = std::sqrt(squared) * (1 + 8 * 0x1p-52) + rounding_error(centre.data(), f);
+    if (!(radius < infinity) || std::isnan(f)) return Interval::all();
+    return {rounded_down(f - radius), rounded_up(f + radius)};
+  }
+
+  std::array<Interval, arity> local_partials(const Interval* in) const {
+    std::array<DualInterval, arity> at;
+    for (int k = 0; k < arity; ++k) at[k] = DualInterval::variable(in[k], k);
+    std::array<Interval, arity> by = apply(op_, at.data()).d;
+    for (int k = 0; k < arity; ++k) {
+      // A NaN bound comes of inf - inf: nothing is known.
+      if (!(by[k].lo <= by[k].hi)) by[k] = Interval::all();
+      if constexpr (is_exact_distance<Op>) by[k] = intersect(by[k], {-1, 1});
+      if constexpr (is_monotone<Op>) {
+        by[k] =
+            intersect(by[k], Op::monotone[k] > 0 ? Interval{0, infinity} : Interval{-infinity, 0});
+      }
+    }
+    return by;
+  }
+
+  template <class O, size_t... I>
+  static auto gain_of(const O& op, const Interval* in, std::index_sequence<I...>)
+      -> decltype(op.gain(in[I]...)) {
+    return op.gain(in[I]...);
+  }
+
+  Op op_;
+  std::vector<double> numbers_;
+  double magnitude_ = 0;
+};
+
+/// Makes the operation from a struct whose parameters are set.
+template <class Op>
+OperationPointer make_operation(Op op) {
+  return std::make_shared<OperationOf<Op>>(std::move(op));
+}
+
+}  // namespace sardf

@@ -1,0 +1,117 @@
+// How two fields are joined. A blend is one struct with its intersection; union and difference
+// follow: union(x, y) = -intersection(-x, -y), difference(x, y) = intersection(x, -y).
+//
+// A blend's intersection never decreases in either argument. It may state
+//   blend_error()        bound of |intersection - min|, infinite by default
+//   gain(x, y)           bound of the sum of its partial derivatives over two intervals
+#pragma once
+
+#include "sardf/op_list.hpp"
+
+namespace sardf {
+
+template <class Blend>
+struct BlendOperation : Blend {
+  static constexpr Kind kind = Kind::internal;
+  static constexpr int arity = 2;
+  BlendOperation() = default;
+  explicit BlendOperation(const Blend& blend) : Blend(blend) {}
+};
+
+template <class Blend>
+struct IntersectionOf : BlendOperation<Blend> {
+  using BlendOperation<Blend>::BlendOperation;
+  static inline const std::string name = std::string(Blend::name) + "_intersection";
+  static inline const std::string doc = "Intersection. " + std::string(Blend::doc);
+  static constexpr std::array<int, 2> monotone{1, 1};
+  template <class T>
+  T eval(T x, T y) const {
+    return this->intersection(x, y);
+  }
+};
+
+template <class Blend>
+struct UnionOf : BlendOperation<Blend> {
+  using BlendOperation<Blend>::BlendOperation;
+  static inline const std::string name = std::string(Blend::name) + "_union";
+  static inline const std::string doc = "Union. " + std::string(Blend::doc);
+  static constexpr std::array<int, 2> monotone{1, 1};
+  template <class T>
+  T eval(T x, T y) const {
+    return -this->intersection(-x, -y);
+  }
+  double gain(Interval x, Interval y) const
+    requires requires(const Blend& b) { b.gain(x, y); }
+  {
+    return Blend::gain(-x, -y);
+  }
+};
+
+template <class Blend>
+struct DifferenceOf : BlendOperation<Blend> {
+  using BlendOperation<Blend>::BlendOperation;
+  static inline const std::string name = std::string(Blend::name) + "_difference";
+  static inline const std::string doc = "Difference. " + std::string(Blend::doc);
+  static constexpr std::array<int, 2> monotone{1, -1};
+  template <class T>
+  T eval(T x, T y) const {
+    return this->intersection(x, -y);
+  }
+  double gain(Interval x, Interval y) const
+    requires requires(const Blend& b) { b.gain(x, y); }
+  {
+    return Blend::gain(x, -y);
+  }
+};
+
+/// Hard minimum and maximum: sharp creases, exact on one side (sardf paper, 1.3.2).
+struct MinMax {
+  static constexpr const char *name = "min_max",
+                              *doc = "The smaller field: creases, the distance error is 0.";
+  template <class V>
+  static void parameters(V&) {}
+  double blend_error() const { return 0; }
+  double gain(Interval, Interval) const { return 1; }
+  template <class T>
+  T intersection(T x, T y) const {
+    return min(x, y);
+  }
+};
+
+/// Rvachev's R0 function (sardf paper, 5): smooth away from the origin, but no distance.
+struct RFunction {
+  static constexpr const char *name = "r_function",
+                              *doc = "x + y - sqrt(x² + y²): smooth off the edge, no distance.";
+  template <class V>
+  static void parameters(V&) {}
+  double blend_error() const { return infinity; }
+  template <class T>
+  T intersection(T x, T y) const {
+    return x + y - length(x, y);
+  }
+};
+
+/// The quadratic polynomial blend. It removes (for a union, adds) material along the edge.
+struct Smooth {
+  static constexpr const char *name = "smooth",
+                              *doc =
+                                  "min - max(k - |x - y|, 0)²/(4k): it moves the surface by up "
+                                  "to k/4 near an edge.";
+  double k = 1;
+  template <class V>
+  static void parameters(V& v) {
+    v(positive_length("k", "width of the band |x - y| < k that is blended"), &Smooth::k);
+  }
+  double blend_error() const { return k / 4; }
+  double gain(Interval, Interval) const { return 1; }
+  template <class T>
+  T intersection(T x, T y) const {
+    const T overlap = max(T(k) - abs(x - y), T(0.0));
+    return min(x, y) - square(overlap) * T(1 / (4 * k));
+  }
+};
+
+template <class... Blends>
+using OpsOfBlends = OpList<IntersectionOf<Blends>..., UnionOf<Blends>..., DifferenceOf<Blends>...>;
+
+}  // namespace sardf

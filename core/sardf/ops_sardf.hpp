@@ -1,0 +1,145 @@
+// The SARDF blends: the corner {min = d} rounded by a circle of radius r(d), tangent to both rays.
+//
+// Source: Fayolle, Pasko, Schmitt, Mirenkov 2004, section 2, with its typos corrected; the C1
+// variant from the authors' later papers (2006, 2008). Sign and zero set are those of min and max.
+#pragma once
+
+#include "sardf/ops_blends.hpp"
+
+namespace sardf {
+
+/// Half the diagonal that a quarter circle of radius 1 cuts off a square corner.
+inline constexpr double corner_cut = 0.29289321881345254;  // 1 - 1/sqrt(2)
+
+/// Whether (x, y) can lie where the radius shrinks towards the edge from outside: both negative,
+/// in the band, nearer than 3 R. Only there do the partial derivatives add up to more than 1.
+inline bool can_reach_outer_corner(Interval x, Interval y, double radius) {
+  const bool band = x.lo - y.hi < radius && y.lo - x.hi < radius;
+  return band && x.lo < 0 && y.lo < 0 && x.hi > -3 * radius && y.hi > -3 * radius;
+}
+
+/// sardf: r(d) = min(d, R) inside, min(-d/2, R) outside (2.2). Not C1 across d = R and d = -2R.
+struct Sardf {
+  static constexpr const char *name = "sardf",
+                              *doc =
+                                  "Rounded in the band |x - y| < R: zero set and sign of "
+                                  "min/max, error at most 0.2929 R.";
+  double radius = 1;
+  template <class V>
+  static void parameters(V& v) {
+    v(positive_length("radius", "R, the largest radius of the rounded level lines"),
+      &Sardf::radius);
+  }
+  double blend_error() const { return rounded_up(corner_cut * radius, 2); }
+  double gain(Interval x, Interval y) const {
+    return can_reach_outer_corner(x, y, radius) ? 1.1715728752538102 : 1;  // 4 - 2 sqrt(2)
+  }
+
+  template <class T>
+  T intersection(T x, T y) const {
+    const T lo = min(x, y), hi = max(x, y), t = hi - lo, R(radius);
+    return shortcut(t >= R || (lo <= T(0.0) && hi >= T(0.0)), lo,
+                    [&] { return max(growing_arc(lo, hi, t), fixed_arc(lo, t)); });
+  }
+
+ private:
+  // Arc of radius d through (x, y) where lo > 0, of radius -d/2 where hi < 0; lo off the cone.
+  template <class T>
+  T growing_arc(T lo, T hi, T t) const {
+    const auto inside = lo > T(0.0);
+    const T root = sqrt(
+        max(select(inside, T(2.0) * lo * (lo + t) - T(3.0) * square(t), T(8.0) * lo * hi), T(0.0)));
+    const T cut =
+        select(inside, (T(2.0) * t - T(3.0) * lo + root) * T(1.0 / 7), T(3.0) * hi - t + root);
+    return select(t < select(inside, lo, -hi), lo + cut, lo);
+  }
+  template <class T>
+  T fixed_arc(T lo, T t) const {
+    return lo + (T(0.5) * (t + sqrt(T(2 * radius * radius) - square(t))) - T(radius));
+  }
+};
+
+/// sardf_c1: r(d) = 2 sqrt(R d) - d for 0 <= d < R, -d - d²/(4R) for -2R < d <= 0, R beyond.
+struct SardfC1 {
+  static constexpr const char *name = "sardf_c1",
+                              *doc =
+                                  "As sardf with a radius that grows smoothly: continuously "
+                                  "differentiable off the edge.";
+  double radius = 1;
+  template <class V>
+  static void parameters(V& v) {
+    v(positive_length("radius", "R, the largest radius of the rounded level lines"),
+      &SardfC1::radius);
+  }
+  double blend_error() const { return rounded_up(corner_cut * radius, 2); }
+  double gain(Interval x, Interval y) const {
+    return can_reach_outer_corner(x, y, radius) ? 1.4142135623730952 : 1;  // sqrt(2)
+  }
+
+  template <class T>
+  T intersection(T x, T y) const {
+    const T lo = min(x, y), hi = max(x, y), t = hi - lo, R(radius);
+    return shortcut(t >= R || (lo <= T(0.0) && hi >= T(0.0)), lo, [&] {
+      const T fixed =
+          lo + (T(0.5) * (t + sqrt(max(T(2 * radius * radius) - square(t), T(0.0)))) - R);
+      const auto inside = lo > T(0.0);
+      const T growing = select(inside, shortcut(!inside, lo, [&] { return inner(lo, hi); }),
+                               shortcut(inside, lo, [&] { return outer(lo, hi, t); }));
+      const auto is_fixed = select(inside, fixed, -T(0.5) * fixed) >= R;
+      return select(is_fixed, fixed, growing);
+    });
+  }
+
+ private:
+  // d = R s², s⁴ - 4s³ - 4s² + 4s(X + Y) - (X² + Y²) = 0, between the parabolas 4 R lo = hi².
+  template <class T>
+  T inner(T lo, T hi) const {
+    const T X = lo * T(1 / radius), Y = hi * T(1 / radius);
+    const auto on_arc = T(4.0) * X > square(Y);
+    const T sum = X + Y, squares = square(X) + square(Y);
+    const T a = freeze(sum), b = freeze(squares);
+    T s = min(T(1.0), T(0.5) * (a + sqrt(max(square(a) - b, T(0.0)))));
+    for (int step = 0; step < 5; ++step) {
+      const T value = quartic(s, a, b), slope = quartic_slope(s, a);
+      const T bend = T(12.0) * square(s) - T(24.0) * s - T(8.0);
+      s = s - T(2.0) * value * slope / (T(2.0) * square(slope) - value * bend);
+    }
+    s = s - quartic(s, sum, squares) / quartic_slope(s, a);
+    return select(on_arc, T(radius) * square(s), lo);
+  }
+  template <class T>
+  static T quartic(T s, T sum, T squares) {
+    return (((s - T(4.0)) * s - T(4.0)) * s + T(4.0) * sum) * s - squares;
+  }
+  template <class T>
+  static T quartic_slope(T s, T sum) {
+    return ((T(4.0) * s - T(12.0)) * s - T(8.0)) * s + T(4.0) * sum;
+  }
+
+  // d = -2R e, e⁴ + 4e³ + (2(X + Y) - 4) e² + X² + Y² = 0, between the parabolas -4 R hi = lo².
+  template <class T>
+  T outer(T lo, T hi, T t) const {
+    const T X = lo * T(1 / radius), Y = hi * T(1 / radius);
+    const auto on_arc = T(-4.0) * Y > square(X);
+    const T sum = X + Y, squares = square(X) + square(Y);
+    const T a = freeze(sum), b = freeze(squares), n = freeze(-Y), w = freeze(t * T(1 / radius));
+    // The start is the arc of `sardf` through the point: radius half the distance.
+    T e = T(0.5) * (T(4.0) * n + T(2.0) * w - sqrt(max(T(8.0) * n * (n + w), T(0.0))));
+    for (int step = 0; step < 4; ++step) e = e - outer_quartic(e, a, b) / outer_slope(e, a);
+    e = e - outer_quartic(e, sum, squares) / outer_slope(e, a);
+    return select(on_arc, T(-2 * radius) * e, lo);
+  }
+  template <class T>
+  static T outer_quartic(T e, T sum, T squares) {
+    return ((e + T(4.0)) * e + (T(2.0) * sum - T(4.0))) * square(e) + squares;
+  }
+  template <class T>
+  static T outer_slope(T e, T sum) {
+    return ((T(4.0) * e + T(12.0)) * e + T(2.0) * (T(2.0) * sum - T(4.0))) * e;
+  }
+};
+
+using BlendList = OpList<Sardf, SardfC1, MinMax, RFunction, Smooth>;
+using BlendOps = OpsOfBlends<Sardf, SardfC1, MinMax, RFunction, Smooth>;
+
+}  // namespace sardf

@@ -63,19 +63,27 @@ def test_blender_is_imported_only_by_its_addon_and_the_tests():
 
 
 def test_blender_addon_holds_no_mathematics():
-    """numpy only carries buffers there: formulas belong to the core, where they are tested."""
-    formulas = {
-        "linalg", "sin", "cos", "tan", "arctan2", "sqrt", "exp", "log", "power", "cross", "dot",
-        "matmul", "einsum", "interp", "gradient",
-    }  # fmt: skip
+    """numpy only carries buffers there, and math only constants and angle units: formulas belong
+    to the core, where they are tested."""
+    allowed_of_math = {"pi", "inf", "nan", "isfinite", "radians", "degrees"}
+    formulas_of_numpy = re.compile(
+        "linalg|a?(sin|cos|tan)h?|arc.*|sqrt|exp|log|power|cross|dot|matmul|einsum|interp"
+    )
     found = []
     for path in files("blender_addon", ".py"):
         modules = {module.split(".")[0] for module in imported_modules(path)}
-        found += [f"{name_of(path)} imports {m}" for m in modules & {"math", "cmath", "scipy"}]
+        found += [f"{name_of(path)} imports {m}" for m in modules & {"cmath", "scipy", "sympy"}]
         for node in ast.walk(ast.parse(path.read_text())):
-            on_numpy = isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name)
-            if on_numpy and node.value.id in ("np", "numpy") and node.attr in formulas:
-                found.append(f"{name_of(path)}:{node.lineno}: numpy.{node.attr}")
+            if not (isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name)):
+                continue
+            module = node.value.id
+            if (module == "math" and node.attr not in allowed_of_math) or (
+                module in ("np", "numpy") and formulas_of_numpy.fullmatch(node.attr)
+            ):
+                found.append(f"{name_of(path)}:{node.lineno}: {module}.{node.attr}")
+        from_math = {m for m in imported_modules(path) if m.startswith("math.")}
+        wrong = from_math - {f"math.{name}" for name in allowed_of_math}
+        found += [f"{name_of(path)} imports {module}" for module in sorted(wrong)]
     assert not found
 
 
@@ -132,10 +140,14 @@ def test_quoted_includes_exist_and_headers_make_no_circle():
             if path.suffix == ".hpp":
                 edges.setdefault(path, set()).add(target.resolve())
 
+    finished: set[Path] = set()
+
     def visit(header: Path, trail: tuple[Path, ...]) -> None:
         assert header not in trail, f"circle: {[name_of(step) for step in (*trail, header)]}"
-        for target in edges.get(header, ()):
-            visit(target, (*trail, header))
+        if header not in finished:
+            for target in edges.get(header, ()):
+                visit(target, (*trail, header))
+            finished.add(header)
 
     for header in edges:
         visit(header, ())

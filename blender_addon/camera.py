@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The core's camera dictionary, shared with the POV-Ray generator, to a camera object."""
+
+import json
+import math
+
+import bpy
+from mathutils import Matrix
+
+NAME = "sardf camera"
+NUMBERS = ("lens", "sensor_width", "clip_start", "clip_end")
+
+
+class CameraError(Exception):
+    """A camera file that cannot be used, in one sentence."""
+
+
+def read(path):
+    """The camera dictionary of a JSON file as headless.py writes it. Raises CameraError."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            camera = json.load(file)
+    except OSError as error:
+        raise CameraError(f"{path}: cannot be read: {error.strerror}") from error
+    except ValueError as error:
+        raise CameraError(f"{path}: is not JSON: {error}") from error
+    problem = _problem(camera)
+    if problem:
+        raise CameraError(f"{path}: {problem}")
+    return camera
+
+
+def _problem(camera):
+    if not isinstance(camera, dict):
+        return "expected an object with the keys of camera.json"
+    for key in NUMBERS:
+        if not (_is_number(camera.get(key)) and camera[key] > 0):
+            return f"'{key}' must be a positive number, found {camera.get(key)!r}"
+    rows = camera.get("matrix_world")
+    if not isinstance(rows, list) or [len(r) for r in rows if isinstance(r, list)] != [4] * 4:
+        return "'matrix_world' must be a list of 4 rows of 4 numbers"
+    if not all(_is_number(value) for row in rows for value in row):
+        return "'matrix_world' holds something that is not a finite number"
+    for key, accepted in (("type", ("PERSP",)), ("sensor_fit", ("HORIZONTAL", "VERTICAL", "AUTO"))):
+        if camera.get(key) not in accepted:
+            return f"'{key}' must be one of {', '.join(accepted)}, found {camera.get(key)!r}"
+    return ""
+
+
+def _is_number(value):
+    return isinstance(value, (int, float)) and math.isfinite(value)
+
+
+def place(scene, camera, world=None):
+    """Make (or move) our camera object in `scene` and make it the active camera.
+
+    `world`: the object's matrix when it does not stand at the origin.
+    """
+    item = next((o for o in scene.objects if o.type == "CAMERA" and o.name.startswith(NAME)), None)
+    if item is None:
+        item = bpy.data.objects.new(NAME, bpy.data.cameras.new(NAME))
+        scene.collection.objects.link(item)
+    location, rotation, scale = ((world or Matrix()) @ Matrix(camera["matrix_world"])).decompose()
+    item.matrix_world = Matrix.LocRotScale(location, rotation, None)
+    size = sum(scale) / 3
+    data = item.data
+    data.type = camera["type"]
+    data.sensor_fit = camera["sensor_fit"]
+    data.sensor_width = camera["sensor_width"]
+    data.lens = camera["lens"]
+    data.clip_start = camera["clip_start"] * size
+    data.clip_end = camera["clip_end"] * size
+    scene.camera = item
+    return item

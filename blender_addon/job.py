@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From a scene file to the arrays that Blender needs; no bpy here, so that a thread may run it."""
+
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+CHANNELS = ("base_color", "roughness", "metallic", "emission", "fractions")
+MESH_SHARE = 0.4  # of the time, for the progress bar: meshing took 0.2 to 0.6 of it on our scenes
+
+
+@dataclass(frozen=True)
+class Request:
+    """What to make: cells along the longest side, texels along a texture's side, cut or whole."""
+
+    path: str
+    resolution: int = 128
+    size: int = 2048
+    sections: bool = True
+    channels: tuple = CHANNELS
+
+
+@dataclass
+class Part:
+    """The made arrays: `mesh` and `maps` as sardf returns them, fractions (vertices, materials)."""
+
+    name: str
+    source: str
+    scene: Any
+    mesh: Any
+    maps: dict
+    fractions: Any
+
+
+def make_part(sardf, request, progress=None):
+    """Mesh, bake and evaluate the scene file of `request`.
+
+    `progress(share)` is called with the share done in [0, 1] and returns False to cancel; then
+    sardf.Cancelled is raised. Raises sardf.Error for what is wrong in the file.
+    """
+
+    def between(start, stop):
+        if progress is None:
+            return None
+        return lambda share: progress(start + (stop - start) * share)
+
+    scene = sardf.load(request.path)
+    mesh = scene.mesh(
+        resolution=request.resolution,
+        sections=request.sections,
+        size=request.size,
+        progress=between(0.0, MESH_SHARE),
+    )
+    maps = scene.bake(
+        mesh, size=request.size, channels=request.channels, progress=between(MESH_SHARE, 1.0)
+    )
+    name = scene.title or Path(request.path).stem
+    fractions = scene.fractions(mesh.vertices)
+    return Part(name, str(request.path), scene, mesh, maps, fractions)
+
+
+class Job:
+    """make_part in a worker thread that the user interface polls.
+
+    `share` is the progress, `running` tells whether the thread is at work; afterwards exactly one
+    of `part`, `error` and `cancelled` is set.
+    """
+
+    def __init__(self, sardf, request):
+        self.share = 0.0
+        self.part = None
+        self.error = None
+        self.cancelled = False
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run, args=(sardf, request), daemon=True)
+        self._thread.start()
+
+    @property
+    def running(self):
+        return self._thread.is_alive()
+
+    def cancel(self):
+        """Ask the thread to stop; it does so within 0.1 s."""
+        self._stop.set()
+
+    def _run(self, sardf, request):
+        try:
+            part = make_part(sardf, request, self._progress)
+        except sardf.Cancelled:
+            self.cancelled = True
+        except Exception as error:  # shown by the operator, which polls: nothing is swallowed
+            self.error = error
+        else:
+            self.part = part
+
+    def _progress(self, share):
+        self.share = share
+        return not self._stop.is_set()

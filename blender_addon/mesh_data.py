@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Arrays to a Blender mesh with UVs, custom normals and one point attribute for each material."""
+
+import math
+
+import bpy
+import numpy as np
+
+
+def corner_layout(faces):
+    """How quads with repeated last indices become polygons.
+
+    `faces` (F,4); returns `keep` (F,4) bool, the corners that exist, and `starts` and `totals` (F,)
+    of each polygon among the kept corners.
+    """
+    keep = np.ones(faces.shape, dtype=bool)
+    keep[:, 3] = faces[:, 2] != faces[:, 3]
+    totals = keep.sum(axis=1).astype(np.int32)
+    starts = (np.cumsum(totals) - totals).astype(np.int32)
+    return keep, starts, totals
+
+
+def build(name, mesh, fractions, materials):
+    """A new bpy Mesh from a sardf mesh, the (V, materials) fractions and the materials' names."""
+    keep, starts, totals = corner_layout(mesh.faces)
+    data = bpy.data.meshes.new(name)
+    data.vertices.add(len(mesh.vertices))
+    data.vertices.foreach_set("co", _floats(mesh.vertices))
+    data.loops.add(int(totals.sum()))
+    data.loops.foreach_set("vertex_index", mesh.faces[keep].astype(np.int32))
+    data.polygons.add(len(starts))
+    data.polygons.foreach_set("loop_start", starts)
+    if not bpy.types.MeshPolygon.bl_rna.properties["loop_total"].is_readonly:  # 4.1 derives it
+        data.polygons.foreach_set("loop_total", totals)
+    data.polygons.foreach_set("use_smooth", np.ones(len(starts), dtype=bool))
+    corners = keep.reshape(-1)
+    data.uv_layers.new(name="UVMap").data.foreach_set("uv", _floats(mesh.uv[corners]))
+    data.update(calc_edges=True)
+    set_normals(data, mesh.normals[corners])
+    set_fractions(data, fractions, materials)
+    return data
+
+
+def set_normals(data, normals):
+    """Give each corner its normal, (corners, 3) unit vectors."""
+    if hasattr(data, "use_auto_smooth"):  # until Blender 4.0 custom normals need it
+        data.use_auto_smooth = True
+        data.auto_smooth_angle = math.pi
+    data.normals_split_custom_set(np.asarray(normals, dtype=np.float32).tolist())
+
+
+def set_fractions(data, fractions, materials):
+    """One FLOAT point attribute with the volume fraction of each material, named after it."""
+    for column, material in enumerate(materials):
+        attribute = data.attributes.new(name=material, type="FLOAT", domain="POINT")
+        attribute.data.foreach_set("value", _floats(fractions[:, column]))
+
+
+def _floats(array):
+    return np.ascontiguousarray(array, dtype=np.float32).reshape(-1)

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the panel lets one choose, kept in the .blend, and what it tells about the scene file."""
+
+from dataclasses import dataclass
+
+import bpy
+
+from . import core, job
+
+SIZES = ("256", "512", "1024", "2048", "4096", "8192")
+
+
+@dataclass
+class Summary:
+    """What the panel shows of a scene file; never stored in the .blend."""
+
+    lines: tuple = ()
+    error: str = ""
+
+
+_summaries = {}  # absolute path -> Summary
+
+
+def summary(settings):
+    """The Summary of the chosen file, or None until it was read in this session."""
+    return _summaries.get(absolute_path(settings))
+
+
+def absolute_path(settings):
+    return bpy.path.abspath(settings.filepath)
+
+
+def read_summary(settings):
+    """Load the chosen file and remember what it holds, or what is wrong with it."""
+    path = absolute_path(settings)
+    try:
+        sardf = core.load()
+    except core.MissingCore as error:
+        _summaries[path] = Summary(error=str(error))
+        return _summaries[path]
+    try:
+        scene = sardf.load(path)
+    except sardf.Error as error:
+        _summaries[path] = Summary(error=str(error))
+    else:
+        count = len(scene.materials)
+        _summaries[path] = Summary(
+            lines=(
+                scene.title or "untitled",
+                f"{count} material{'' if count == 1 else 's'}: {', '.join(scene.materials)}",
+                f"unit: {scene.units}; sections: {scene.section_count}",
+            )
+        )
+    return _summaries[path]
+
+
+def request(settings):
+    """The job.Request that the settings ask for."""
+    return job.Request(
+        path=absolute_path(settings),
+        resolution=settings.resolution,
+        size=int(settings.size),
+        sections=settings.sections,
+    )
+
+
+def _filepath_changed(settings, _context):
+    if settings.filepath:
+        read_summary(settings)
+
+
+class SardfSettings(bpy.types.PropertyGroup):
+    filepath: bpy.props.StringProperty(
+        name="Scene File",
+        description="The sardf scene file to mesh, bake and render",
+        subtype="FILE_PATH",
+        update=_filepath_changed,
+    )
+    resolution: bpy.props.IntProperty(
+        name="Mesh Cells",
+        description="Cells of the mesh along the part's longest side",
+        default=128,
+        min=4,
+        max=4096,
+        soft_max=512,
+    )
+    size: bpy.props.EnumProperty(
+        name="Texture Size",
+        description="Texels along a side of each baked texture",
+        items=[(size, f"{size} px", f"{size} x {size} texels") for size in SIZES],
+        default="2048",
+    )
+    sections: bpy.props.BoolProperty(
+        name="Cut Open",
+        description="Remove what the scene file's sections remove",
+        default=True,
+    )
+    set_units: bpy.props.BoolProperty(
+        name="Use the File's Unit",
+        description="Set the Blender scene's unit to the unit of the scene file",
+        default=True,
+    )
+    studio: bpy.props.BoolProperty(
+        name="Studio",
+        description="Render with our own camera, lights and world instead of the scene's",
+        default=True,
+    )
+    samples: bpy.props.IntProperty(
+        name="Samples",
+        description="Cycles samples of each pixel",
+        default=64,
+        min=1,
+        max=65536,
+        soft_max=1024,
+    )
+
+
+def register():
+    bpy.utils.register_class(SardfSettings)
+    bpy.types.Scene.sardf = bpy.props.PointerProperty(type=SardfSettings)
+
+
+def unregister():
+    del bpy.types.Scene.sardf
+    bpy.utils.unregister_class(SardfSettings)

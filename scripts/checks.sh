@@ -1,6 +1,11 @@
 # Sourced by scripts/test and scripts/test-long: counted checks and test suites.
 checks=$logs/checks.tsv
 
+setup_failed() {
+  printf '\nfailed: setup\n0 passed, 1 failed, 0 skipped\n'
+  exit 1
+}
+
 begin_checks() {
   rm -f "$logs"/googletest.xml "$logs"/pytest.xml
   : >"$checks"

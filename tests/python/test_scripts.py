@@ -1,6 +1,7 @@
 """The scripts that users and CI call: setup's promises and the closing line's arithmetic."""
 
 import os
+import shutil
 import subprocess
 import sys
 import time
@@ -33,6 +34,24 @@ def test_setup_stops_on_another_system(system, tmp_path):
     assert done.returncode == 1
     assert done.stdout == ""
     assert "prepares only Debian 12. Nothing was changed." in done.stderr
+    assert "\n  nothing\n" in done.stderr  # setup has run here, so no package may be missed
+
+
+def test_setup_names_what_another_system_lacks(tmp_path):
+    """The same script beside a list with a program and a file that no system has."""
+    copy = tmp_path / "scripts"
+    copy.mkdir()
+    for name in ("setup", "common.sh"):
+        shutil.copy(ROOT / "scripts" / name, copy)
+    packages = "# comment\n\nbash  bash\nfancy  no-such-program\nlibfancy-dev  fancy/no_such.hpp\n"
+    (copy / "packages.txt").write_text(packages)
+    done = subprocess.run(
+        [copy / "setup"], env=os.environ | {"SARDF_OS_RELEASE": "absent"}, capture_output=True,
+        text=True, stdin=subprocess.DEVNULL,
+    )  # fmt: skip
+    assert done.returncode == 1
+    lacking = [line.strip() for line in done.stderr.splitlines() if line.startswith("  ")]
+    assert lacking == ["fancy (no-such-program)", "libfancy-dev (fancy/no_such.hpp)"]
 
 
 GOOGLETEST = """<testsuites><testsuite name="Box">

@@ -1,0 +1,112 @@
+// A scene: a solid, what it is made of, and how it is shown. Scene files and Python both make one.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sardf/evaluate.hpp"
+#include "sardf/field.hpp"
+#include "sardf/fractions.hpp"
+#include "sardf/progress.hpp"
+
+namespace sardf {
+
+struct Material {
+  std::string name;
+  Vec3 color{0.8, 0.8, 0.8};  // linear Rec.709
+  double roughness = 0.5;     // 0 to 1
+  double metallic = 0;        // 0 to 1
+  double index_of_refraction = 1.45;
+  Vec3 emission{};                                            // linear, unbounded
+  std::optional<double> density;                              // g/cm³
+  std::vector<std::pair<std::string, std::string>> metadata;  // free: name, JSON text of the value
+};
+
+/// A scalar (one component) or vector function on the object.
+struct Attribute {
+  std::string name;
+  std::string unit;  // free text
+  std::vector<Field> components;
+};
+
+/// A cut: what is removed from the picture, except from the parts that are kept whole.
+struct Section {
+  Field remove;
+  std::vector<Field> keep;
+};
+
+struct NamedField {
+  std::string name;
+  Field field;
+};
+
+/// How the picture is framed; see camera.hpp.
+struct View {
+  Vec3 direction{1, -1.6, 0.9};  // from the object towards the camera
+  double lens = 50;              // mm, for a sensor 36 mm wide
+};
+
+/// What the user states. Make it ready with Scene(description).
+struct SceneDescription {
+  std::string title;
+  std::string comment;
+  std::string units = "mm";  // um, mm, cm, m, in
+  std::vector<std::pair<std::string, double>> parameters;
+  std::vector<NamedField> fields;  // in file order
+  Field solid;
+  std::vector<Material> materials;
+  Fractions fractions;  // empty: the first material everywhere
+  std::vector<Attribute> attributes;
+  std::vector<Section> sections;
+  std::optional<BoundingBox> stated_bounds;  // proven, not believed
+  std::optional<double> stated_lipschitz;    // of the solid; believed, and labelled so
+  View view;
+};
+
+/// Metres per unit; Error for an unknown unit.
+double metres_per_unit(const std::string& units);
+
+class Scene {
+ public:
+  /// Finds certified bounds and lowers everything to expressions. Throws Error: an empty or
+  /// unbounded solid, a material named twice, fractions of unknown materials, ...
+  explicit Scene(SceneDescription description, const Progress& progress = {});
+
+  const SceneDescription& description() const { return description_; }
+  std::vector<std::string> material_names() const;
+  double metres_per_unit() const { return sardf::metres_per_unit(description_.units); }
+
+  /// Certified: outside them the solid is proven empty. Padded by 1e-4 of the diagonal.
+  const BoundingBox& bounds() const { return bounds_; }
+
+  const Expression& solid() const { return description_.solid.expression(); }
+  /// The solid with its sections cut away: what is drawn.
+  const Expression& drawn() const { return drawn_; }
+  /// The solids that the sections remove, joined: >= 0 where material was cut away. Null: none.
+  const Expression& removed() const { return removed_; }
+
+  /// One for each material, >= 0, their sum 1, defined in all of space.
+  const std::vector<Expression>& fractions() const { return fractions_; }
+  /// Σ fraction × material property; colours have 3 components, linear.
+  std::array<Expression, 3> base_color() const;
+  std::array<Expression, 3> emission() const;
+  Expression roughness() const;
+  Expression metallic() const;
+
+  /// fractions at n points (n × 3, row-major) into n × materials; rows are renormalised to sum 1.
+  /// `outside_nan`: NaN where the point lies outside the solid. Throws Error naming the place where
+  /// fractions cannot be normalised.
+  void fractions_at(const double* points, size_t n, double* out, bool outside_nan = false) const;
+
+ private:
+  SceneDescription description_;
+  BoundingBox bounds_;
+  Expression drawn_, removed_;
+  std::vector<Expression> fractions_;
+};
+
+}  // namespace sardf

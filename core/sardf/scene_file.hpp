@@ -1,0 +1,30 @@
+// Scene files: JSON with comments, read with every error located, and written back.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sardf/error.hpp"
+#include "sardf/scene.hpp"
+
+namespace sardf {
+
+/// All that is wrong with a scene file, in the file's order; what() joins them, one a line.
+struct SceneErrors : Error {
+  explicit SceneErrors(std::vector<Error> all);
+  std::vector<Error> errors;
+};
+
+/// Reads a scene; "-" reads standard input. Throws SceneErrors.
+SceneDescription read_scene(const std::string& path);
+/// The same from text; `file` is the name that errors carry.
+SceneDescription parse_scene(const std::string& text, const std::string& file);
+
+/// The scene as text that parse_scene reads back to equal expressions. Shared fields are named.
+std::string scene_text(const SceneDescription& scene);
+void write_scene(const std::string& path, const SceneDescription& scene);
+
+/// The JSON Schema (draft 2020-12) of scene files, generated from the registries.
+std::string scene_schema();
+
+}  // namespace sardf

@@ -1,0 +1,86 @@
+// One Python function for each constructor and one class-like function for each blend, by loops
+// over the registries.
+#include "convert.hpp"
+#include "sardf/error.hpp"
+#include "sardf/formula.hpp"
+
+namespace sardf {
+
+namespace {
+
+// "sardf_c1" -> "SardfC1".
+std::string camel_case(const std::string& name) {
+  std::string out;
+  bool upper = true;
+  for (char c : name) {
+    if (c == '_') {
+      upper = true;
+    } else {
+      out += upper ? char(std::toupper(c)) : c;
+      upper = false;
+    }
+  }
+  return out;
+}
+
+void bind_constructor(py::module_& m, const Constructor& constructor) {
+  const std::string doc =
+      docstring(constructor.name, constructor.doc, constructor.parameters, constructor.variadic());
+  m.attr(constructor.name.c_str()) = py::cpp_function(
+      [&constructor](const py::args& args, const py::kwargs& kwargs) {
+        try {
+          return make_field(constructor, arguments_from(constructor.name, constructor.parameters,
+                                                        constructor.variadic(), args, kwargs));
+        } catch (const Error& error) {
+          if (error.message.starts_with(constructor.name)) throw;
+          throw Error(constructor.name + ": " + error.message);
+        }
+      },
+      py::name(constructor.name.c_str()), py::doc(doc.c_str()), py::scope(m));
+}
+
+Field formula(const std::string& text, const py::kwargs& names) {
+  std::map<std::string, Field> fields;
+  for (const auto& [name, value] : names) {
+    fields[py::cast<std::string>(name)] = field_from(value, py::cast<std::string>(name));
+  }
+  return parse_formula(text, fields, {});
+}
+
+}  // namespace
+
+void bind_constructors(py::module_& m) {
+  py::dict constructor_dict, blend_dict;
+  for (const Constructor& constructor : constructors()) {
+    bind_constructor(m, constructor);
+    constructor_dict[constructor.name.c_str()] = constructor.group;
+  }
+  for (const BlendType& type : blend_types()) {
+    const std::string name = camel_case(type.name);
+    const std::string doc = docstring(name, type.doc, type.parameters, -1);
+    m.attr(name.c_str()) = py::cpp_function(
+        [&type](const py::args& args, const py::kwargs& kwargs) {
+          return std::const_pointer_cast<Blend>(
+              make_blend(type.name, arguments_from(type.name, type.parameters, -1, args, kwargs)));
+        },
+        py::name(name.c_str()), py::doc(doc.c_str()), py::scope(m));
+    blend_dict[type.name.c_str()] = name;
+  }
+  // What the package exports and the stub generator loops over.
+  m.attr("_constructors") = constructor_dict;
+  m.attr("_blends") = blend_dict;
+  m.def("formula", &formula, py::arg("text"),
+        "formula(text, **names)\n\nA field from a formula over x, y, z, pi and the given fields or "
+        "numbers, e.g. formula(\"sin(k*x) + part\", k=2, part=box).");
+  m.attr("x") = Field::coordinate(0);
+  m.attr("y") = Field::coordinate(1);
+  m.attr("z") = Field::coordinate(2);
+  m.def(
+      "_set_blend",
+      [](const std::shared_ptr<Blend>& blend) {
+        return std::const_pointer_cast<Blend>(std::exchange(current_blend(), blend));
+      },
+      py::arg("blend"), "Sets the blend that booleans take when none is given; the former one.");
+}
+
+}  // namespace sardf

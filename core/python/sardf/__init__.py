@@ -1,0 +1,48 @@
+"""sardf models a solid together with what it is made of, by distances.
+
+    import sardf
+    part = sardf.box(size=(20, 12, 8)) - sardf.cylinder(radius=3)
+    part([(0, 0, 0), (9, 0, 0)])          # positive inside, negative outside
+
+Constructors (`sardf.box`, `sardf.union`, ...), blends (`sardf.Sardf`, ...) and the words of scene
+files are one and the same; `docs/operations.md` lists them.
+"""
+
+from sardf import _core
+from sardf._core import (
+    Blend,
+    Cancelled,
+    Error,
+    Field,
+    Mesh,
+    __version__,
+    formula,
+    load,
+    schema,
+    x,
+    y,
+    z,
+)
+from sardf._scene import Scene, blend
+
+for _name in (*_core._constructors, *_core._blends.values()):
+    globals()[_name] = getattr(_core, _name)
+
+__all__ = [
+    "Blend",
+    "Cancelled",
+    "Error",
+    "Field",
+    "Mesh",
+    "Scene",
+    "__version__",
+    "blend",
+    "formula",
+    "load",
+    "schema",
+    "x",
+    "y",
+    "z",
+    *_core._constructors,
+    *_core._blends.values(),
+]

@@ -1,0 +1,175 @@
+#include "sardf/scene.hpp"
+
+#include "convert.hpp"
+#include "sardf/bake_channels.hpp"
+#include "sardf/camera.hpp"
+#include "sardf/error.hpp"
+#include "sardf/mesher.hpp"
+#include "sardf/scene_file.hpp"
+
+namespace sardf {
+
+namespace {
+
+using Points = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using ScenePointer = std::shared_ptr<Scene>;
+
+size_t count_points(const Points& points) {
+  if (points.ndim() != 2 || points.shape(1) != 3) {
+    throw Error("points have the shape " + std::string(py::str(points.attr("shape"))) +
+                "; (N, 3) is accepted");
+  }
+  return size_t(points.shape(0));
+}
+
+py::array_t<double> fractions(const Scene& scene, const Points& points,
+                              const std::string& outside) {
+  if (outside != "extend" && outside != "nan") {
+    throw Error("outside is '" + outside + "'; accepted are 'extend' and 'nan'" +
+                did_you_mean(outside, {"extend", "nan"}));
+  }
+  const size_t n = count_points(points);
+  py::array_t<double> out({n, scene.fractions().size()});
+  double* to = out.mutable_data();
+  const double* from = points.data();
+  py::gil_scoped_release release;
+  scene.fractions_at(from, n, to, outside == "nan");
+  return out;
+}
+
+// A scalar attribute gives (N,), a vector (N, components).
+py::dict attributes(const Scene& scene) {
+  py::dict out;
+  for (const Attribute& attribute : scene.description().attributes) {
+    std::vector<Expression> components;
+    for (const Field& f : attribute.components) components.push_back(f.expression());
+    out[attribute.name.c_str()] = py::cpp_function(
+        [evaluator = Evaluator(components)](const Points& points) {
+          const size_t n = count_points(points);
+          std::vector<size_t> shape{n};
+          if (evaluator.outputs() > 1) shape.push_back(evaluator.outputs());
+          py::array_t<double> values(shape);
+          evaluator.values(points.data(), n, values.mutable_data());
+          return values;
+        },
+        py::arg("points"));
+  }
+  return out;
+}
+
+py::dict camera(const Scene& scene, int width, int height) {
+  const View& view = scene.description().view;
+  const Camera framed = frame_camera(scene.bounds(), width, height, view.direction, view.lens);
+  py::dict out;
+  py::list matrix;
+  for (const auto& row : framed.matrix_world) matrix.append(py::cast(row));
+  out["matrix_world"] = matrix;
+  out["lens"] = framed.lens;
+  out["sensor_width"] = framed.sensor_width;
+  out["sensor_height"] = framed.sensor_height;
+  out["sensor_fit"] = framed.sensor_fit_name();
+  out["type"] = framed.type_name();
+  out["ortho_scale"] = framed.ortho_scale;
+  out["shift_x"] = framed.shift_x;
+  out["shift_y"] = framed.shift_y;
+  out["clip_start"] = framed.clip_start;
+  out["clip_end"] = framed.clip_end;
+  return out;
+}
+
+Mesh mesh(const Scene& scene, int resolution, double cell_size, bool sections, int size, int gutter,
+          py::object callable) {
+  PythonProgress progress(std::move(callable));
+  return progress.run([&](const Progress& report) {
+    SurfaceOptions options;
+    options.resolution = resolution;
+    options.cell_size = cell_size;
+    options.sections = sections;
+    options.texture_size = size;
+    options.gutter = gutter;
+    return make_surface(scene, options, report);
+  });
+}
+
+py::array_t<float> to_array(Image&& image) {
+  auto* samples = new std::vector<float>(std::move(image.samples));
+  const py::capsule owner(samples, [](void* p) { delete static_cast<std::vector<float>*>(p); });
+  return py::array_t<float>({image.height, image.width, image.channels}, samples->data(), owner);
+}
+
+py::dict bake(const Scene& scene, const Mesh& surface, int size,
+              const std::vector<std::string>& channels, int gutter, bool sections,
+              py::object callable) {
+  PythonProgress progress(std::move(callable));
+  const std::vector<BakeChannel> wanted = scene_channels(scene, channels);
+  std::vector<Image> images = progress.run([&](const Progress& report) {
+    return bake_scene(scene, surface, wanted, {size, gutter, sections}, report);
+  });
+  py::dict out;
+  for (size_t i = 0; i < wanted.size(); ++i) {
+    out[wanted[i].name.c_str()] = to_array(std::move(images[i]));
+  }
+  return out;
+}
+
+ScenePointer with_section(const Scene& scene, const Field& remove, std::vector<Field> keep) {
+  SceneDescription description = scene.description();
+  description.sections.push_back({remove, std::move(keep)});
+  return std::make_shared<Scene>(std::move(description));
+}
+
+ScenePointer from_json(const std::string& text, const std::map<std::string, Field>& fields) {
+  return std::make_shared<Scene>(parse_scene(text, "", fields));
+}
+
+}  // namespace
+
+void bind_scenes(py::module_& m) {
+  py::class_<Scene, ScenePointer>(m, "Scene", "A solid, what it is made of, and how it is shown.")
+      .def_static(
+          "from_json", &from_json, py::arg("text"),
+          py::arg("fields") = std::map<std::string, Field>{},
+          "A scene from a scene file's text; `fields` are names it may use besides its own.")
+      .def(
+          "to_json", [](const Scene& s) { return scene_text(s.description()); },
+          "The scene as a scene file's text.")
+      .def(
+          "save", [](const Scene& s, const std::string& p) { write_scene(p, s.description()); },
+          py::arg("path"), "Writes a scene file.")
+      .def_property_readonly("title", [](const Scene& s) { return s.description().title; })
+      .def_property_readonly("units", [](const Scene& s) { return s.description().units; })
+      .def_property_readonly("metres_per_unit", &Scene::metres_per_unit)
+      .def_property_readonly("materials", &Scene::material_names, "Names, in order.")
+      .def_property_readonly("solid", [](const Scene& s) { return s.description().solid; })
+      .def_property_readonly(
+          "bounds", [](const Scene& s) { return py::make_tuple(s.bounds().lo, s.bounds().hi); },
+          "Certified (lo, hi): outside them the solid is proven empty.")
+      .def_property_readonly("section_count",
+                             [](const Scene& s) { return s.description().sections.size(); })
+      .def("fractions", &fractions, py::arg("points"), py::arg("outside") = "extend",
+           "Volume fractions at points (N, 3): (N, materials), rows sum to 1. outside='nan' marks "
+           "points outside the solid.")
+      .def_property_readonly("attributes", &attributes, "{name: function of points (N, 3)}.")
+      .def("mesh", &mesh, py::arg("resolution") = 128, py::arg("cell_size") = 0.0,
+           py::arg("sections") = true, py::arg("size") = 2048, py::arg("gutter") = 8,
+           py::arg("progress") = py::none(),
+           "The surface with texture coordinates for a texture of `size`². resolution: cells along "
+           "the longest side; cell_size (scene units) instead when > 0. progress(share) may return "
+           "False to cancel, which raises Cancelled.")
+      .def("bake", &bake, py::arg("mesh"), py::arg("size") = 2048,
+           py::arg("channels") = std::vector<std::string>{"base_color", "fractions"},
+           py::arg("gutter") = 8, py::arg("sections") = true, py::arg("progress") = py::none(),
+           "{channel: float32 (size, size, components)}, row 0 at the top, linear. Channels: "
+           "base_color, roughness, metallic, emission, fractions (as fractions_1, ... of three "
+           "materials each), field, and attributes by name.")
+      .def("camera", &camera, py::arg("width") = 640, py::arg("height") = 480,
+           "A camera that frames the object: matrix_world, lens (mm), sensor_width, ...")
+      .def("section", &with_section, py::arg("remove"), py::arg("keep") = std::vector<Field>{},
+           "The scene with one more cut: `remove` is taken away, the `keep` solids stay whole.");
+  m.def(
+      "load", [](const std::string& path) { return std::make_shared<Scene>(read_scene(path)); },
+      py::arg("path"), "Reads a scene file. Raises Error with all that is wrong in it.");
+  m.def("schema", &scene_schema, "The JSON Schema of scene files, as text.");
+}
+
+}  // namespace sardf

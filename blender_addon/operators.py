@@ -71,7 +71,7 @@ class SARDF_OT_bake(bpy.types.Operator):
         except core.MissingCore as error:
             return self._fail(error)
         SARDF_OT_bake.job = job.Job(sardf, properties.request(context.scene.sardf))
-        self._images, self._steps, self._stopped = {}, None, False
+        self._images, self._steps = {}, None
         manager = context.window_manager
         self._timer = manager.event_timer_add(POLL_SECONDS, window=context.window)
         manager.modal_handler_add(self)
@@ -80,19 +80,15 @@ class SARDF_OT_bake(bpy.types.Operator):
 
     def modal(self, context, event):
         if event.type == "ESC" and event.value == "PRESS":
-            self._stopped = True
-            SARDF_OT_bake.job.cancel()
-            return {"RUNNING_MODAL"}
+            self._clean_up(context)
+            self.report({"INFO"}, "Bake cancelled")
+            return {"CANCELLED"}  # the thread ends by itself, within 0.1 s
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
         running = SARDF_OT_bake.job
         if running.running:
             self._show(context)
             return {"PASS_THROUGH"}
-        if self._stopped or running.cancelled:
-            self._clean_up(context)
-            self.report({"INFO"}, "Bake cancelled")
-            return {"CANCELLED"}
         if running.error is not None:
             self._clean_up(context)
             if not isinstance(running.error, core.load().Error):

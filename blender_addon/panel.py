@@ -7,7 +7,7 @@ import bpy
 
 from . import operators, properties
 
-LINE = 38  # characters that fit into the sidebar at its default width
+LINE = 28  # characters that fit into the sidebar at its default width
 
 
 class SARDF_PT_main(bpy.types.Panel):

@@ -77,7 +77,7 @@ class SardfSettings(bpy.types.PropertyGroup):
         update=_filepath_changed,
     )
     resolution: bpy.props.IntProperty(
-        name="Mesh Cells",
+        name="Cells",
         description="Cells of the mesh along the part's longest side",
         default=128,
         min=4,
@@ -85,7 +85,7 @@ class SardfSettings(bpy.types.PropertyGroup):
         soft_max=512,
     )
     size: bpy.props.EnumProperty(
-        name="Texture Size",
+        name="Textures",
         description="Texels along a side of each baked texture",
         items=[(size, f"{size} px", f"{size} x {size} texels") for size in SIZES],
         default="2048",
@@ -96,7 +96,7 @@ class SardfSettings(bpy.types.PropertyGroup):
         default=True,
     )
     set_units: bpy.props.BoolProperty(
-        name="Use the File's Unit",
+        name="File's Unit",
         description="Set the Blender scene's unit to the unit of the scene file",
         default=True,
     )

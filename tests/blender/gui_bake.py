@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Drives the installed add-on in a window with mouse and keyboard, as a user would.
+
+Run in an X server: blender --factory-startup -P gui_bake.py -- SCENE FOLDER. Writes result.json and
+screenshots into FOLDER. Each step waits for what it expects, no longer than its limit.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import time
+import traceback
+from pathlib import Path
+
+import bpy
+
+SCENE, FOLDER = sys.argv[sys.argv.index("--") + 1 :]
+TICK = 0.05  # seconds between two looks at Blender's state
+LIMIT = 120.0  # seconds to wait for anything at most; llvmpipe on a busy machine is slow
+BUTTON_GREY = 70  # of 255, in the standard theme: the panel is darker, its buttons are brighter
+result = {"errors": []}
+drawn = {"panel": 0}
+
+
+class TimeOut(Exception):
+    pass
+
+
+def until(condition, what, limit=LIMIT):
+    """Give Blender time until `condition()` holds."""
+    end = time.monotonic() + limit
+    while not condition():
+        if time.monotonic() > end:
+            screenshot("time_out")
+            raise TimeOut(f"waited {limit:.0f} s for {what}")
+        yield
+
+
+def view():
+    window = bpy.context.window_manager.windows[0]
+    area = max(
+        (a for a in window.screen.areas if a.type == "VIEW_3D"), key=lambda a: a.width * a.height
+    )
+    return window, area, {region.type: region for region in area.regions}
+
+
+def click(x, y):
+    """A real click; Blender counts y from below, X from above."""
+    height = view()[0].height
+    command = ["xdotool", "mousemove", str(x), str(height - y), "click", "1"]
+    subprocess.run(command, check=True)
+
+
+def screenshot(name):
+    subprocess.run(["import", "-window", "root", f"{FOLDER}/{name}.png"], check=True)
+
+
+def contents():
+    kinds = ("objects", "meshes", "materials", "images", "scenes", "textures")
+    return {kind: sorted(x.name for x in getattr(bpy.data, kind)) for kind in kinds}
+
+
+def count_panel_draws():
+    from sardf_blender import panel
+
+    original = panel.SARDF_PT_main.draw
+
+    def draw(self, context):
+        original(self, context)
+        drawn["panel"] += 1
+
+    panel.SARDF_PT_main.draw = draw
+
+
+def bake_class():
+    from sardf_blender import operators
+
+    return operators.SARDF_OT_bake
+
+
+def redrawn():
+    """Wait until the panel was drawn again, with everything that is in it now."""
+    before = drawn["panel"]
+    view()[1].tag_redraw()
+    yield from until(lambda: drawn["panel"] > before, "the panel to be drawn")
+
+
+def open_tab():
+    """Open the sidebar and click down its column of tabs until ours is shown."""
+    _, area, regions = view()
+    area.spaces.active.show_region_ui = True
+    yield from until(lambda: regions["UI"].width > 50, "the sidebar to open")
+    right, top = regions["UI"].x + regions["UI"].width, regions["UI"].y + regions["UI"].height
+    for down in range(30, 500, 25):
+        click(right - 10, top - down)
+        end = time.monotonic() + 0.5
+        while drawn["panel"] == 0 and time.monotonic() < end:
+            yield
+        if drawn["panel"]:
+            return
+    raise TimeOut("no tab showed the panel")
+
+
+def button_height(x):
+    """(row from above, rows) of the tallest button that the column x of the screen crosses."""
+    command = ["import", "-window", "root", "-crop", f"1x9999+{x}+0", "-depth", "8", "gray:-"]
+    column = subprocess.run(command, check=True, capture_output=True).stdout
+    best, start = (0, 0), None
+    for row, value in enumerate(column + b"\0"):
+        if value > BUTTON_GREY and start is None:
+            start = row
+        elif value <= BUTTON_GREY and start is not None:
+            best, start = max(best, (row - start, start)), None
+    return best[1], best[0]
+
+
+def press_bake():
+    """Click the Bake button: the one that is higher than a line of the panel."""
+    yield from redrawn()
+    window, _, regions = view()
+    x = regions["UI"].x + 50  # between the button's icon and its text
+    row, rows = button_height(x)
+    if not 25 <= rows <= 40:
+        screenshot("no_button")
+        raise TimeOut(f"no Bake button in the panel: the highest has {rows} rows")
+    click(x, window.height - row - rows // 2)
+    yield from until(lambda: bake_class().job is not None, "the click on Bake to start the job", 20)
+
+
+def scenario():
+    bpy.ops.preferences.addon_enable(module="sardf_blender")
+    bpy.context.preferences.view.show_splash = False
+    count_panel_draws()
+    bpy.data.meshes.remove(bpy.data.meshes["Cube"])
+    settings = bpy.context.scene.sardf
+    settings.filepath = SCENE
+    # Long enough to be interrupted: seconds.
+    settings.resolution, settings.size = 256, "4096"
+    yield from open_tab()
+    yield from redrawn()
+    screenshot("panel")
+    yield from cancelled_bake()
+    settings.resolution, settings.size = 48, "512"
+    window, area, regions = view()
+    with bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"]):
+        bpy.ops.ed.undo_push(message="before the bake")
+    yield from finished_bake()
+    yield from undone_bake()
+
+
+def cancelled_bake():
+    before = contents()
+    yield from press_bake()
+    job = bake_class().job
+    yield from until(lambda: job.share > 0, "the job to make progress")
+    yield from redrawn()
+    screenshot("baking")
+    result["interrupted at"] = job.share
+    pressed = time.monotonic()
+    subprocess.run(["xdotool", "key", "Escape"], check=True)
+    yield from until(lambda: bake_class().job is None, "Esc to end the job", 20)
+    result["seconds to cancel"] = time.monotonic() - pressed
+    yield from until(lambda: not job.running, "the thread to end")
+    result["seconds to end the thread"] = time.monotonic() - pressed
+    result["thread was cancelled"] = job.cancelled
+    result["left behind"] = contents() != before
+
+
+def finished_bake():
+    yield from press_bake()
+    yield from until(lambda: bake_class().job is None, "the bake to end")
+    window, area, regions = view()
+    item = bpy.context.view_layer.objects.active
+    result["baked"] = contents()
+    result["faces"] = len(item.data.polygons)
+    result["unit"] = bpy.context.scene.unit_settings.length_unit
+    shading = area.spaces.active.shading
+    shading.type, shading.color_type = "SOLID", "TEXTURE"
+    with bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"]):
+        bpy.ops.view3d.view_selected(use_all_regions=False)
+    yield from redrawn()
+    yield from redrawn()
+    screenshot("baked")
+
+
+def undone_bake():
+    """One undo step takes back all of the bake, and nothing else."""
+    window, area, regions = view()
+    with bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"]):
+        bpy.ops.ed.undo()
+    yield
+    result["objects after undo"] = sorted(item.name for item in bpy.context.scene.objects)
+
+
+def tick(steps):
+    try:
+        next(steps)
+        return TICK
+    except StopIteration:
+        leave()
+    except Exception:
+        traceback.print_exc()
+        result["errors"].append(traceback.format_exc())
+        leave()
+
+
+def leave():
+    Path(FOLDER, "result.json").write_text(json.dumps(result, indent=1))
+    sys.stdout.flush()
+    os._exit(0)  # quitting asks about unsaved changes
+
+
+STEPS = scenario()
+bpy.app.timers.register(lambda: tick(STEPS), first_interval=1.0, persistent=True)

@@ -1,6 +1,7 @@
 #include "cli/command_compare_images.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <iostream>
@@ -29,9 +30,13 @@ struct Options {
   std::string numbers;
 };
 
+// By alpha; an alpha that is opaque all over says nothing, as some programs write it always.
 Mask mask_of(const Image& image, const Options& options) {
-  return image.channels == 4 ? mask_from_alpha(image)
-                             : mask_from_background(image, options.background);
+  if (image.channels == 4) {
+    Mask mask = mask_from_alpha(image);
+    if (std::find(mask.begin(), mask.end(), 0) != mask.end()) return mask;
+  }
+  return mask_from_background(image, options.background);
 }
 
 std::string file_name(const std::string& path) {

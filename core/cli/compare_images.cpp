@@ -154,9 +154,11 @@ nlohmann::ordered_json to_json(const ColorAgreement& color) {
           {"left_out_within_share", color.left_out_within_share}};
 }
 
+// Counts whole; else digits enough to tell 0.99798 from a limit of 0.998.
 std::string number_text(double value) {
   std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4g", value);
+  const bool whole = value == std::floor(value) && std::abs(value) < 1e15;
+  std::snprintf(text.data(), text.size(), whole ? "%.0f" : "%.5g", value);
   return text.data();
 }
 

@@ -239,9 +239,9 @@ std::string report_page(const std::string& title, const std::vector<ReportScene>
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
       escaped(title) + "</title>\n<style>" + report_style + "</style></head>\n<body><main>\n<h1>" +
       escaped(title) + "</h1>\n<p>";
-  html += failed == 0 ? badge(true, "All " + std::to_string(views) + " comparisons agree")
-                      : badge(false, std::to_string(failed) + " of " + std::to_string(views) +
-                                         " comparisons miss a limit");
+  const std::string count = std::to_string(views) + (views == 1 ? " comparison" : " comparisons");
+  html += failed == 0 ? badge(true, count + ", all limits hold")
+                      : badge(false, std::to_string(failed) + " of " + count + " beyond a limit");
   html += "</p>\n";
   if (scenes.size() > 1) html += overview(scenes);
   for (size_t i = 0; i < scenes.size(); ++i) html += section(scenes[i], i);

@@ -14,6 +14,7 @@ import traceback
 from pathlib import Path
 
 import bpy
+from bpy_extras.view3d_utils import location_3d_to_region_2d
 
 SCENE, FOLDER = sys.argv[sys.argv.index("--") + 1 :]
 TICK = 0.05  # seconds between two looks at Blender's state
@@ -131,6 +132,7 @@ def press_bake():
 def scenario():
     bpy.ops.preferences.addon_enable(module="sardf_blender")
     bpy.context.preferences.view.show_splash = False
+    bpy.context.preferences.view.smooth_view = 0  # milliseconds of a flight to a new view
     count_panel_draws()
     bpy.data.meshes.remove(bpy.data.meshes["Cube"])
     settings = bpy.context.scene.sardf
@@ -176,12 +178,22 @@ def finished_bake():
     result["faces"] = len(item.data.polygons)
     result["unit"] = bpy.context.scene.unit_settings.length_unit
     shading = area.spaces.active.shading
-    shading.type, shading.color_type = "SOLID", "TEXTURE"
+    shading.type, shading.light, shading.color_type = "SOLID", "FLAT", "TEXTURE"
     with bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"]):
+        bpy.ops.view3d.view_axis(type="FRONT")
         bpy.ops.view3d.view_selected(use_all_regions=False)
     yield from redrawn()
+    result["seen"] = [seen(vertex.co) for vertex in item.data.vertices if vertex.co.y < -2]
     yield from redrawn()
     screenshot("baked")
+
+
+def seen(point):
+    """[point, its pixel on the screenshot (column, row)], in the scene's units."""
+    window, area, regions = view()
+    region = regions["WINDOW"]
+    x, y = location_3d_to_region_2d(region, area.spaces.active.region_3d, point)
+    return [list(point), [region.x + x, window.height - (region.y + y)]]
 
 
 def undone_bake():

@@ -50,7 +50,12 @@ PYBIND11_MODULE(_image, m) {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const Error& error) {
       const py::object type = py::module_::import("sardf._core").attr("Error");
-      PyErr_SetString(type.ptr(), error.what());
+      py::object instance = type(std::string(error.what()));
+      instance.attr("file") = error.file;
+      instance.attr("line") = error.line;
+      instance.attr("pointer") = error.pointer;
+      instance.attr("message") = error.message;
+      PyErr_SetObject(type.ptr(), instance.ptr());
     }
   });
   m.def(

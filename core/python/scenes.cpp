@@ -4,8 +4,8 @@
 #include "sardf/bake_channels.hpp"
 #include "sardf/camera.hpp"
 #include "sardf/error.hpp"
-#include "sardf/mesher.hpp"
 #include "sardf/scene_file.hpp"
+#include "sardf/surface.hpp"
 
 namespace sardf {
 
@@ -97,13 +97,15 @@ py::array_t<float> to_array(Image&& image) {
   return py::array_t<float>({image.height, image.width, image.channels}, samples->data(), owner);
 }
 
-py::dict bake(const Scene& scene, const Mesh& surface, int size,
-              const std::vector<std::string>& channels, int gutter, bool sections,
-              py::object callable) {
+py::dict bake_maps(const Scene& scene, const Mesh& surface, int size,
+                   const std::vector<std::string>& channels, int gutter, bool sections,
+                   py::object callable) {
   PythonProgress progress(std::move(callable));
   const std::vector<BakeChannel> wanted = scene_channels(scene, channels);
   std::vector<Image> images = progress.run([&](const Progress& report) {
-    return bake_scene(scene, surface, wanted, {size, gutter, sections}, report);
+    const TexelMap texels(surface, size, gutter, part_of(report, 0, 0.1));
+    return bake_images(texels, sections ? scene.drawn() : scene.solid(), wanted,
+                       part_of(report, 0.1, 1));
   });
   py::dict out;
   for (size_t i = 0; i < wanted.size(); ++i) {
@@ -156,7 +158,7 @@ void bind_scenes(py::module_& m) {
            "The surface with texture coordinates for a texture of `size`². resolution: cells along "
            "the longest side; cell_size (scene units) instead when > 0. progress(share) may return "
            "False to cancel, which raises Cancelled.")
-      .def("bake", &bake, py::arg("mesh"), py::arg("size") = 2048,
+      .def("bake", &bake_maps, py::arg("mesh"), py::arg("size") = 2048,
            py::arg("channels") = std::vector<std::string>{"base_color", "fractions"},
            py::arg("gutter") = 8, py::arg("sections") = true, py::arg("progress") = py::none(),
            "{channel: float32 (size, size, components)}, row 0 at the top, linear. Channels: "

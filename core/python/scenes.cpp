@@ -2,7 +2,7 @@
 
 #include "convert.hpp"
 #include "sardf/bake_channels.hpp"
-#include "sardf/camera.hpp"
+#include "sardf/camera_file.hpp"
 #include "sardf/error.hpp"
 #include "sardf/scene_file.hpp"
 #include "sardf/surface.hpp"
@@ -57,24 +57,9 @@ py::dict attributes(const Scene& scene) {
   return out;
 }
 
-py::dict camera(const Scene& scene, int width, int height) {
-  const View& view = scene.description().view;
-  const Camera framed = frame_camera(scene.bounds(), width, height, view.direction, view.lens);
-  py::dict out;
-  py::list matrix;
-  for (const auto& row : framed.matrix_world) matrix.append(py::cast(row));
-  out["matrix_world"] = matrix;
-  out["lens"] = framed.lens;
-  out["sensor_width"] = framed.sensor_width;
-  out["sensor_height"] = framed.sensor_height;
-  out["sensor_fit"] = framed.sensor_fit_name();
-  out["type"] = framed.type_name();
-  out["ortho_scale"] = framed.ortho_scale;
-  out["shift_x"] = framed.shift_x;
-  out["shift_y"] = framed.shift_y;
-  out["clip_start"] = framed.clip_start;
-  out["clip_end"] = framed.clip_end;
-  return out;
+py::object camera(const Scene& scene, int width, int height) {
+  return py::module_::import("json").attr("loads")(
+      camera_text(scene_camera(scene, width, height)));
 }
 
 Mesh mesh(const Scene& scene, int resolution, double cell_size, bool sections, int size, int gutter,

@@ -45,9 +45,8 @@ struct NamedField {
 };
 
 /// How the picture is framed; see camera.hpp.
-struct View {
-  Vec3 direction{1, -1.6, 0.9};  // from the object towards the camera
-  double lens = 50;              // mm, for a sensor 36 mm wide
+struct Framing {
+  Vec3 direction{0.5, -0.78, 0.42};  // from the object towards the camera
 };
 
 /// What the user states. Make it ready with Scene(description).
@@ -64,7 +63,7 @@ struct SceneDescription {
   std::vector<Section> sections;
   std::optional<BoundingBox> stated_bounds;  // proven, not believed
   std::optional<double> stated_lipschitz;    // of the solid; believed, and labelled so
-  View view;
+  Framing view;
 };
 
 /// Metres per unit; Error for an unknown unit.

@@ -8,7 +8,9 @@ import bpy
 from mathutils import Matrix
 
 NAME = "sardf camera"
-NUMBERS = ("lens", "sensor_width", "clip_start", "clip_end")
+POSITIVE = ("lens", "sensor_width", "sensor_height", "ortho_scale", "clip_start", "clip_end")
+SHIFTS = ("shift_x", "shift_y")
+CHOICES = {"type": ("PERSP", "ORTHO"), "sensor_fit": ("HORIZONTAL", "VERTICAL", "AUTO")}
 
 
 class CameraError(Exception):
@@ -33,15 +35,18 @@ def read(path):
 def _problem(camera):
     if not isinstance(camera, dict):
         return "expected an object with the keys of camera.json"
-    for key in NUMBERS:
+    for key in POSITIVE:
         if not (_is_number(camera.get(key)) and camera[key] > 0):
             return f"'{key}' must be a positive number, found {camera.get(key)!r}"
+    for key in SHIFTS:
+        if not _is_number(camera.get(key)):
+            return f"'{key}' must be a number, found {camera.get(key)!r}"
     rows = camera.get("matrix_world")
     if not isinstance(rows, list) or [len(r) for r in rows if isinstance(r, list)] != [4] * 4:
         return "'matrix_world' must be a list of 4 rows of 4 numbers"
     if not all(_is_number(value) for row in rows for value in row):
         return "'matrix_world' holds something that is not a finite number"
-    for key, accepted in (("type", ("PERSP",)), ("sensor_fit", ("HORIZONTAL", "VERTICAL", "AUTO"))):
+    for key, accepted in CHOICES.items():
         if camera.get(key) not in accepted:
             return f"'{key}' must be one of {', '.join(accepted)}, found {camera.get(key)!r}"
     return ""
@@ -64,10 +69,9 @@ def place(scene, camera, world=None):
     item.matrix_world = Matrix.LocRotScale(location, rotation, None)
     size = sum(scale) / 3
     data = item.data
-    data.type = camera["type"]
-    data.sensor_fit = camera["sensor_fit"]
-    data.sensor_width = camera["sensor_width"]
-    data.lens = camera["lens"]
+    for key in (*CHOICES, "lens", "sensor_width", "sensor_height", *SHIFTS):
+        setattr(data, key, camera[key])
+    data.ortho_scale = camera["ortho_scale"] * size
     data.clip_start = camera["clip_start"] * size
     data.clip_end = camera["clip_end"] * size
     scene.camera = item

@@ -10,80 +10,16 @@ channels as textures/*.exr. Exit code: 0 everything was written, 1 it was not, 2
 usage; then one line on standard error says why.
 """
 
-import argparse
 import importlib.util
 import json
 import os
 import shutil
 import sys
-import tempfile
 import time
 import traceback
 from pathlib import Path
 
-PACKAGE = "sardf_blender"
-DONE, FAILED, WRONG_INPUT = 0, 1, 2
-
-
-class Stop(Exception):
-    """The end of the run with an exit code and one line of explanation."""
-
-    def __init__(self, code, text):
-        super().__init__(text)
-        self.code = code
-
-
-class Parser(argparse.ArgumentParser):
-    def error(self, message):
-        raise Stop(WRONG_INPUT, f"{message} (--help lists the options)")
-
-
-def whole(low, high):
-    """An argument type: a whole number in [low, high]."""
-
-    def parse(text):
-        try:
-            value = int(text)
-        except ValueError:
-            value = None
-        if value is None or not low <= value <= high:
-            raise argparse.ArgumentTypeError(
-                f"expected a whole number from {low} to {high}, found '{text}'"
-            )
-        return value
-
-    return parse
-
-
-def looks(text):
-    known = ("shaded", "flat", "normals")
-    names = text.split(",")
-    for name in names:
-        if name not in known:
-            raise argparse.ArgumentTypeError(f"'{name}' is none of {', '.join(known)}")
-    return [name for name in known if name in names]
-
-
-def parse_arguments(arguments):
-    parser = Parser(prog="headless.py", description=__doc__.split("\n")[0])
-    flag = argparse.BooleanOptionalAction
-    parser.add_argument("scene", metavar="SCENE", help="scene file")
-    parser.add_argument("-o", "--output", required=True, metavar="OUT", help="folder to write to")
-    parser.add_argument("--resolution", type=whole(4, 4096), default=128,
-                        help="cells along the longest side (%(default)s)")  # fmt: skip
-    parser.add_argument("--size", type=whole(64, 16384), default=2048,
-                        help="texels along a texture's side (%(default)s)")  # fmt: skip
-    parser.add_argument("--samples", type=whole(1, 65536), default=64,
-                        help="samples of each pixel of the shaded look (%(default)s)")  # fmt: skip
-    parser.add_argument("--width", type=whole(8, 16384), default=640, help="pixels (%(default)s)")
-    parser.add_argument("--height", type=whole(8, 16384), default=480, help="pixels (%(default)s)")
-    parser.add_argument("--camera", metavar="JSON", help="a camera.json to use, not our framing")
-    parser.add_argument("--section", action=flag, default=True, help="cut the part open")
-    parser.add_argument("--look", type=looks, default=["shaded"], metavar="LOOK[,LOOK]",
-                        help="shaded, flat, normals (shaded)")  # fmt: skip
-    parser.add_argument("--keep-blend", action=flag, default=True,
-                        help="write part.blend and textures")  # fmt: skip
-    return parser.parse_args(arguments)
+PACKAGE = "sardf_blender"  # as it is called when installed
 
 
 def import_addon():
@@ -102,26 +38,13 @@ def addon(name):
     return importlib.import_module(f"{PACKAGE}.{name}")
 
 
-def make_workplace(output):
-    """A folder inside `output` where files are written before they get their names."""
-    try:
-        Path(output).mkdir(parents=True, exist_ok=True)
-        return Path(tempfile.mkdtemp(prefix=".sardf-", dir=output))
-    except OSError as error:
-        raise Stop(FAILED, f"{output}: cannot be written: {error.strerror}") from error
+import_addon()
+arguments, outputs = addon("arguments"), addon("outputs")
+DONE, FAILED, WRONG_INPUT = arguments.DONE, arguments.FAILED, arguments.WRONG_INPUT
+Stop = arguments.Stop
 
 
-def publish(workplace, output):
-    """Move every file of the workplace to its place in `output`; return their paths."""
-    files = sorted(file for file in workplace.rglob("*") if file.is_file())
-    targets = [Path(output) / file.relative_to(workplace) for file in files]
-    for file, target in zip(files, targets, strict=True):
-        target.parent.mkdir(exist_ok=True)
-        os.replace(file, target)
-    return targets
-
-
-def make_part(options):
+def make_part(options, signals):
     """The arrays of the scene file, and its camera."""
     core, job, camera = addon("core"), addon("job"), addon("camera")
     try:
@@ -132,10 +55,13 @@ def make_part(options):
     request = job.Request(options.scene, options.resolution, options.size, options.section, wanted)
     try:
         given = camera.read(options.camera) if options.camera else None
-        part = job.make_part(sardf, request)
+        part = job.make_part(sardf, request, progress=lambda share: not signals.name)
         return part, given or part.scene.camera(width=options.width, height=options.height)
     except (sardf.Error, camera.CameraError) as error:
         raise Stop(WRONG_INPUT, str(error)) from error
+    except sardf.Cancelled:
+        signals.check()
+        raise
 
 
 def build_scene(part, view, options):
@@ -156,10 +82,10 @@ def build_scene(part, view, options):
     return scene, item, images
 
 
-def render_looks(scene, item, images, options, workplace):
+def render_looks(scene, item, images, options, workplace, signals):
     material, render = addon("material"), addon("render")
     own = item.material_slots[0].material
-    for look in sorted(options.look, key=["flat", "normals", "shaded"].index):
+    for look in options.look:
         if look == "shaded":
             render.set_shaded(scene, options.samples)
             item.material_slots[0].material = own
@@ -171,6 +97,7 @@ def render_looks(scene, item, images, options, workplace):
                 else material.build_normals()
             )
         render.to_file(scene, workplace / render.LOOKS[look])
+        signals.check()
     item.material_slots[0].material = own
     render.set_shaded(scene, options.samples)
 
@@ -195,34 +122,35 @@ def keep_blend(images, workplace):
 
 def run(options):
     """Make everything and return the written files."""
+    addon("render")  # imports bpy, which sets signal handlers of its own
+    signals = outputs.Signals()
     started = time.perf_counter()
-    workplace = make_workplace(options.output)
+    workplace = outputs.make_workplace(options.output)
     try:
-        part, view = make_part(options)
+        part, view = make_part(options, signals)
         faces, vertices = len(part.mesh.faces), len(part.mesh.vertices)
         made = time.perf_counter()
         print(f"sardf: {vertices} vertices, {faces} faces, baked in {made - started:.1f} s")
         scene, item, images = build_scene(part, view, options)
-        render_looks(scene, item, images, options, workplace)
+        render_looks(scene, item, images, options, workplace, signals)
         if options.keep_blend:
             keep_blend(images, workplace)
+        signals.check()
         (workplace / "camera.json").write_text(json.dumps(view, indent=1) + "\n")
         print(f"sardf: rendered in {time.perf_counter() - made:.1f} s")
-        return publish(workplace, options.output)
+        return outputs.publish(workplace, options.output)
     except OSError as error:
         raise Stop(FAILED, f"{options.output}: cannot be written: {error}") from error
     finally:
         shutil.rmtree(workplace, ignore_errors=True)
 
 
-def main(arguments):
-    """Run with a list of arguments; returns the exit code."""
+def main(words):
+    """Run with a list of command-line words; returns the exit code."""
     try:
-        options = parse_arguments(arguments)
-        try:
-            import_addon()
-        except ModuleNotFoundError as error:
-            raise Stop(FAILED, f"{error}: run this in Blender or with the bpy module") from error
+        options = arguments.parse(words)
+        if importlib.util.find_spec("bpy") is None:
+            raise Stop(FAILED, "run this in Blender, or with a Python that has the bpy module")
         for path in run(options):
             print(f"sardf: wrote {path}")
         return DONE

@@ -53,7 +53,11 @@ def make_part(sardf, request, progress=None):
         progress=between(0.0, MESH_SHARE),
     )
     maps = scene.bake(
-        mesh, size=request.size, channels=request.channels, progress=between(MESH_SHARE, 1.0)
+        mesh,
+        size=request.size,
+        channels=request.channels,
+        sections=request.sections,
+        progress=between(MESH_SHARE, 1.0),
     )
     name = scene.title or Path(request.path).stem
     fractions = scene.fractions(mesh.vertices)

@@ -22,12 +22,13 @@ def corner_layout(faces):
 
 def build(name, mesh, fractions, materials):
     """A new bpy Mesh from a sardf mesh, the (V, materials) fractions and the materials' names."""
-    keep, starts, totals = corner_layout(mesh.faces)
+    vertices, faces = mesh.vertices, mesh.faces  # each access copies
+    keep, starts, totals = corner_layout(faces)
     data = bpy.data.meshes.new(name)
-    data.vertices.add(len(mesh.vertices))
-    data.vertices.foreach_set("co", _floats(mesh.vertices))
+    data.vertices.add(len(vertices))
+    data.vertices.foreach_set("co", _floats(vertices))
     data.loops.add(int(totals.sum()))
-    data.loops.foreach_set("vertex_index", mesh.faces[keep].astype(np.int32))
+    data.loops.foreach_set("vertex_index", faces[keep].astype(np.int32))
     data.polygons.add(len(starts))
     data.polygons.foreach_set("loop_start", starts)
     if not bpy.types.MeshPolygon.bl_rna.properties["loop_total"].is_readonly:  # 4.1 derives it

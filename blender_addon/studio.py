@@ -14,9 +14,9 @@ WORLD = "sardf studio"
 # name, direction to the light in the camera's axes (right, up, towards the camera), edge length
 # in radii of the object, and the brightness it gives a white matte surface that faces it.
 LIGHTS = (
-    ("key", (-0.80, 0.75, 0.70), 6.5, 0.62),
-    ("fill", (1.00, 0.05, 0.75), 6.5, 0.42),
-    ("rim", (0.45, 0.75, -0.90), 5.0, 0.30),
+    ("key", (-0.80, 0.75, 0.70), 6.5, 0.95),
+    ("fill", (1.00, 0.05, 0.75), 6.5, 0.50),
+    ("rim", (0.45, 0.75, -0.90), 5.0, 0.40),
 )
 DISTANCE = 5.0  # of each light from the object, in radii
 

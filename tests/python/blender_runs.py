@@ -77,8 +77,8 @@ def environment(user_folder):
     return result
 
 
-def run_script(version, script, *arguments, user_folder, env=None, limit=300):
-    """Run a Python script in a Blender version; returns the finished process.
+def start_script(version, script, *arguments, user_folder, env=None):
+    """Start a Python script in a Blender version.
 
     For 3.4.1 this is the documented command without --python-exit-code, so that the exit code is
     the script's own doing.
@@ -89,10 +89,21 @@ def run_script(version, script, *arguments, user_folder, env=None, limit=300):
     else:
         # The script may want its arguments after "--", as in Blender.
         command = [str(BPY_PYTHON), str(script), *([] if script == HEADLESS else ["--"]), *words]
-    return subprocess.run(
+    return subprocess.Popen(
         command,
         env=environment(user_folder) | (env or {}),
-        capture_output=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
         text=True,
-        timeout=limit,
     )
+
+
+def run_script(version, script, *arguments, limit=300, **keywords):
+    """Run a script as start_script does; returns the finished process."""
+    with start_script(version, script, *arguments, **keywords) as process:
+        try:
+            output, errors = process.communicate(timeout=limit)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            raise
+    return subprocess.CompletedProcess(process.args, process.returncode, output, errors)

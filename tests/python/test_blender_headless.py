@@ -2,6 +2,7 @@
 
 import json
 import shutil
+import time
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from blender_runs import (
     expected_fractions,
     linear,
     run_script,
+    start_script,
     write_scene,
 )
 
@@ -180,6 +182,7 @@ def test_shaded_look_is_neither_dark_nor_burnt_out(sphere):
     grey = picture.mean(axis=-1)
     assert 0.25 < np.median(grey[on_part]) < 0.85
     assert (grey[on_part] > 0.99).mean() < 0.05
+    assert np.percentile(grey[on_part], 99) > 0.55  # the lights, not just the world
     assert np.ptp(grey[on_part]) > 0.2
     backdrop = picture[~on_part]  # its pixels at the outline hold a bit of the part
     assert np.percentile(np.ptp(backdrop, axis=-1), 95) < 0.06
@@ -244,6 +247,26 @@ def test_unwritable_output_has_exit_code_1(version, tmp_path):
     )
 
 
+@pytest.mark.parametrize("version", VERSIONS)
+def test_terminated_run_cleans_up_as_does_the_next_after_a_kill(version, tmp_path):
+    output = tmp_path / "out"
+    left = output / ".sardf-999999999-x"  # no process has this number
+    left.mkdir(parents=True)
+    (left / "part.png").touch()
+    scene = write_scene(tmp_path, GRADED_SPHERE)
+    process = start_script(
+        version, HEADLESS, scene, "-o", output, "--resolution", 256, "--size", 4096,
+        user_folder=tmp_path / "user",
+    )  # fmt: skip
+    while process.poll() is None and (left.exists() or not list(output.glob(".sardf-*"))):
+        time.sleep(0.01)
+    process.terminate()
+    standard_output, standard_error = process.communicate(timeout=120)
+    assert process.returncode == 1, standard_output + standard_error
+    assert "sardf: stopped by SIGTERM" in standard_error
+    assert not list(output.iterdir())
+
+
 USAGE = {
     "no output": ((), "-o"),
     "unknown option": (("-o", "out", "--resolutoin", "3"), "--resolutoin"),
@@ -264,7 +287,8 @@ CAMERAS = {
     "a list": ("[]", "expected an object"),
     "negative lens": ('{"lens": -1}', "'lens' must be a positive number"),
     "no matrix": (
-        '{"lens": 50, "sensor_width": 36, "clip_start": 1, "clip_end": 9}',
+        '{"lens": 50, "sensor_width": 36, "sensor_height": 24, "ortho_scale": 1, "clip_start": 1,'
+        ' "clip_end": 9, "shift_x": 0, "shift_y": 0}',
         "'matrix_world' must be a list of 4 rows",
     ),
 }

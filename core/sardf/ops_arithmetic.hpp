@@ -92,7 +92,7 @@ struct Sign : Function<1> {
                               *doc = "-1, 0 or 1 as a is negative, zero or positive";
   template <class T>
   T eval(T a) const {
-    return select(a > T(0.0), T(1.0), select(a < T(0.0), T(-1.0), T(0.0)));
+    return jump(a > T(0.0), T(1.0), jump(a < T(0.0), T(-1.0), T(0.0)));
   }
 };
 
@@ -109,7 +109,7 @@ struct Less : Function<2> {
   static constexpr const char *name = "less", *doc = "1 where a < b, else 0";
   template <class T>
   T eval(T a, T b) const {
-    return select(a < b, T(1.0), T(0.0));
+    return jump(a < b, T(1.0), T(0.0));
   }
 };
 
@@ -117,7 +117,7 @@ struct LessEqual : Function<2> {
   static constexpr const char *name = "less_equal", *doc = "1 where a <= b, else 0";
   template <class T>
   T eval(T a, T b) const {
-    return select(a <= b, T(1.0), T(0.0));
+    return jump(a <= b, T(1.0), T(0.0));
   }
 };
 
@@ -125,7 +125,7 @@ struct Equal : Function<2> {
   static constexpr const char *name = "equal", *doc = "1 where a = b, else 0";
   template <class T>
   T eval(T a, T b) const {
-    return select(a <= b && b <= a, T(1.0), T(0.0));
+    return jump(a <= b && b <= a, T(1.0), T(0.0));
   }
 };
 
@@ -133,7 +133,7 @@ struct Select : Function<3> {
   static constexpr const char *name = "select", *doc = "b where the condition a is not 0, else c";
   template <class T>
   T eval(T a, T b, T c) const {
-    return select(a < T(0.0) || a > T(0.0), b, c);
+    return jump(a < T(0.0) || a > T(0.0), b, c);
   }
 };
 
@@ -160,7 +160,7 @@ struct Step : Function<2> {
   static constexpr const char *name = "step", *doc = "0 where b < a, else 1";
   template <class T>
   T eval(T a, T b) const {
-    return select(b < a, T(0.0), T(1.0));
+    return jump(b < a, T(0.0), T(1.0));
   }
 };
 

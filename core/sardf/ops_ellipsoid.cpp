@@ -10,34 +10,39 @@ constexpr int most_steps = 64;
 // Distances from a coordinate plane, in radii, at which the steps are counted.
 constexpr double grades[] = {1e-18, 1e-12, 1e-8, 1e-5, 1e-3, 0.01, 0.03, 0.1,
                              0.2,   0.4,   0.6,  0.8,  0.95, 1,    1.5,  4};
+// Relative distances from the rim of the medial disc.
+constexpr double rim_grades[] = {-0.1, -0.01, -1e-3, -1e-4, -1e-6, -1e-9, -1e-12, -1e-15, 0,
+                                 0.1,  0.01,  1e-3,  1e-4,  1e-6,  1e-9,  1e-12,  1e-15};
+constexpr double rim_directions[] = {0, 0.1, 0.5, 1};
 
-// The root's variable after each step, for one point; how many steps until it no longer moves by
-// more than rounding. The iteration rises monotonically, so standing still is being there.
+}  // namespace
+
 template <int N>
-int steps_needed(const std::array<double, N>& radii, const std::array<double, N>& excess,
-                 const std::array<double, N>& y) {
-  double s = -infinity;
-  for (int i = 0; i < N; ++i) s = max(s, radii[i] * y[i] - excess[i]);
+int EllipsoidDistance<N>::steps_needed(std::array<double, N> y) const {
+  std::array<double, N> z;
+  y[shortest_] = max(y[shortest_], radii_[shortest_] * 1e-18);
+  for (int i = 0; i < N; ++i) z[i] = radii_[i] * y[i];
+  // steps_ is 0 here: only the halvings.
+  double s = root(z);
   for (int step = 0; step < most_steps; ++step) {
     double g = 0, slope = 0;
     for (int i = 0; i < N; ++i) {
-      const double c = radii[i] * y[i] / (s + excess[i]);
+      const double c = z[i] / (s + excess_[i]);
       g += c * c;
-      slope += c * c / (s + excess[i]);
+      slope += c * c / (s + excess_[i]);
     }
     const double rise = (std::sqrt(g) - 1) * g / slope;
     // The distance is stationary in the root: half of the digits give all of its digits.
-    if (!(rise > 1e-9 * (s + excess[0] + excess[N - 1]) && rise > 1e-9 * s)) return step;
+    if (!(rise > 1e-9 * s)) return step;
     s += rise;
   }
   return most_steps;
 }
 
-}  // namespace
-
 // The count depends on the point's direction and depth only through smooth quantities; the slowest
-// points lie near the medial set, where the shortest axis' coordinate vanishes. A fan of points,
-// graded geometrically towards every coordinate plane, finds the most that these radii need.
+// points lie near the medial disc, where the shortest axis' coordinate vanishes, and there near its
+// rim Σ (e_i y_i / excess_i)² = 1. Points graded geometrically towards the coordinate planes and
+// towards the rim find the most that these radii need.
 template <int N>
 void EllipsoidDistance<N>::set(const std::array<double, N>& radii) {
   radii_ = radii;
@@ -47,25 +52,44 @@ void EllipsoidDistance<N>::set(const std::array<double, N>& radii) {
     least = min(least, radii[i]);
     most = max(most, radii[i]);
   }
-  if (most > 100 * least) {
+  if (most > most_ratio * least) {
     throw Error("radii have the ratio " + std::to_string(most / least) +
-                "; the distance is proven up to 100");
+                "; the distance is proven up to " + std::to_string(int(most_ratio)));
   }
   for (int i = 0; i < N; ++i) excess_[i] = (radii[i] - least) * (radii[i] + least);
+  steps_ = 0;
+  int steps = 0;
   std::array<double, N> y;
-  const auto visit = [&](auto&& self, int axis) -> void {
-    if (axis == N) {
-      y[shortest_] = max(y[shortest_], radii[shortest_] * 1e-18);
-      steps_ = std::max(steps_, steps_needed<N>(radii, excess_, y));
-      return;
-    }
-    for (double grade : grades) {
+  const auto visit = [&](auto&& self, int axis, const auto& along, const auto& use) -> void {
+    if (axis == N) return use();
+    for (double grade : along) {
       y[axis] = grade * radii[axis];
-      self(self, axis + 1);
+      self(self, axis + 1, along, use);
     }
   };
-  visit(visit, 0);
-  steps_ += 1;
+  visit(visit, 0, grades, [&] { steps = std::max(steps, steps_needed(y)); });
+  visit(visit, 0, rim_directions, [&] { steps = std::max(steps, steps_needed_near_rim(y)); });
+  steps_ = steps + 1;
+}
+
+template <int N>
+int EllipsoidDistance<N>::steps_needed_near_rim(const std::array<double, N>& direction) const {
+  double squares = 0;
+  for (int i = 0; i < N; ++i) {
+    if (excess_[i] > 0) squares += square(radii_[i] * direction[i] / excess_[i]);
+  }
+  if (squares == 0) return 0;
+  int steps = 0;
+  for (double rim : rim_grades) {
+    for (double thin : grades) {
+      std::array<double, N> y{};
+      for (int i = 0; i < N; ++i) {
+        y[i] = excess_[i] > 0 ? direction[i] * (1 + rim) / std::sqrt(squares) : thin * radii_[i];
+      }
+      steps = std::max(steps, steps_needed(y));
+    }
+  }
+  return steps;
 }
 
 template class EllipsoidDistance<2>;

@@ -25,22 +25,11 @@ class EllipsoidDistance {
   T eval(const std::array<T, N>& at) const {
     std::array<T, N> y, z;
     for (int i = 0; i < N; ++i) y[i] = abs(at[i]);
-    T s(0.0);
     for (int i = 0; i < N; ++i) {
       // A trace of thickness keeps the root positive on the plane of the shortest radius.
       z[i] = T(radii_[i]) * freeze(i == shortest_ ? max(y[i], T(radii_[i] * 1e-18)) : y[i]);
-      s = i == 0 ? z[i] - T(excess_[i]) : max(s, z[i] - T(excess_[i]));
     }
-    for (int step = 0; step < steps_; ++step) {
-      T g(0.0), slope(0.0);
-      for (int i = 0; i < N; ++i) {
-        const T inverse = T(1.0) / (s + T(excess_[i]));
-        const T squared = square(z[i] * inverse);
-        g = i == 0 ? squared : g + squared;
-        slope = i == 0 ? squared * inverse : slope + squared * inverse;
-      }
-      s = s + max((sqrt(g) - T(1.0)) * g / slope, T(0.0));
-    }
+    const T s = root(z);
     T toward(0.0), unit(0.0), normal(0.0);
     for (int i = 0; i < N; ++i) {
       const T c = z[i] / (s + T(excess_[i])), n = c * T(1 / radii_[i]);
@@ -54,6 +43,48 @@ class EllipsoidDistance {
   int steps() const { return steps_; }
 
  private:
+  // The root lies between the largest z_i - excess_i and |z|, which may be many decades apart near
+  // the medial disc: halving their logarithm's range comes before Newton's iteration.
+  template <class T>
+  T root(const std::array<T, N>& z) const {
+    T low = z[0] - T(excess_[0]), squares = square(z[0]);
+    for (int i = 1; i < N; ++i) {
+      low = max(low, z[i] - T(excess_[i]));
+      squares = squares + square(z[i]);
+    }
+    T high = sqrt(squares);
+    for (int step = 0; step < halvings; ++step) {
+      const T middle = sqrt(low) * sqrt(high);
+      T g(0.0);
+      for (int i = 0; i < N; ++i) {
+        const T squared = square(z[i] / (middle + T(excess_[i])));
+        g = i == 0 ? squared : g + squared;
+      }
+      const auto is_low = g >= T(1.0);
+      low = select(is_low, middle, low);
+      high = select(is_low, high, middle);
+    }
+    T s = low;
+    for (int step = 0; step < steps_; ++step) {
+      T g(0.0), slope(0.0);
+      for (int i = 0; i < N; ++i) {
+        const T inverse = T(1.0) / (s + T(excess_[i]));
+        const T squared = square(z[i] * inverse);
+        g = i == 0 ? squared : g + squared;
+        slope = i == 0 ? squared * inverse : slope + squared * inverse;
+      }
+      s = s + max((sqrt(g) - T(1.0)) * g / slope, T(0.0));
+    }
+    return s;
+  }
+
+  /// Newton steps that the root takes for this point, and the most near a point of the medial
+  /// disc's rim in this direction.
+  int steps_needed(std::array<double, N> y) const;
+  int steps_needed_near_rim(const std::array<double, N>& direction) const;
+
+  static constexpr int halvings = 5;
+  static constexpr double most_ratio = 200;
   std::array<double, N> radii_{};
   std::array<double, N> excess_{};  // e_i² - min(e)²
   int shortest_ = 0;
@@ -71,7 +102,7 @@ struct Ellipsoid : Solid {
   template <class V>
   static void parameters(V& v) {
     v(length_of("center", "its middle"), &Ellipsoid::center);
-    v(positive_length("radii", "its three radii, their ratio at most 100"), &Ellipsoid::radii);
+    v(positive_length("radii", "its three radii, their ratio at most 200"), &Ellipsoid::radii);
   }
   void prepare() { distance_to.set(radii); }
   template <class T>
@@ -94,7 +125,7 @@ struct Ellipse {
   template <class V>
   static void parameters(V& v) {
     v(length_of("center", "its middle"), &Ellipse::center);
-    v(positive_length("radii", "its two radii, their ratio at most 100"), &Ellipse::radii);
+    v(positive_length("radii", "its two radii, their ratio at most 200"), &Ellipse::radii);
   }
   void prepare() { distance_to.set(radii); }
   template <class T>

@@ -37,7 +37,7 @@ struct Sardf {
 
   template <class T>
   T intersection(T x, T y) const {
-    const T lo = min(x, y), hi = max(x, y), t = hi - lo, R(radius);
+    const T lo = smaller(x, y), hi = larger(x, y), t = hi - lo, R(radius);
     return shortcut(t >= R || (lo <= T(0.0) && hi >= T(0.0)), lo,
                     [&] { return max(growing_arc(lo, hi, t), fixed_arc(lo, t)); });
   }
@@ -78,7 +78,7 @@ struct SardfC1 {
 
   template <class T>
   T intersection(T x, T y) const {
-    const T lo = min(x, y), hi = max(x, y), t = hi - lo, R(radius);
+    const T lo = smaller(x, y), hi = larger(x, y), t = hi - lo, R(radius);
     return shortcut(t >= R || (lo <= T(0.0) && hi >= T(0.0)), lo, [&] {
       const T fixed =
           lo + (T(0.5) * (t + sqrt(max(T(2 * radius * radius) - square(t), T(0.0)))) - R);

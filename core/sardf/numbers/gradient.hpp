@@ -46,6 +46,18 @@ struct Gradient {
     return g;
   }
 
+  /// `value` with a's derivative, b's, or the mean of both where neither is chosen.
+  template <class Mask>
+  static Gradient tied(const Gradient& a, const Gradient& b, const Mask& is_a, const Mask& is_b,
+                       const T& value) {
+    Gradient g;
+    g.v = value;
+    for (int i = 0; i < N; ++i) {
+      g.d[i] = select(is_a, a.d[i], select(is_b, b.d[i], T(0.5) * (a.d[i] + b.d[i])));
+    }
+    return g;
+  }
+
   friend Gradient operator+(const Gradient& a, const Gradient& b) {
     Gradient g;
     g.v = a.v + b.v;
@@ -93,6 +105,12 @@ struct Gradient {
     g.v = max(a.v, b.v);
     return g;
   }
+  friend Gradient smaller(const Gradient& a, const Gradient& b) {
+    return tied(a, b, a.v < b.v, b.v < a.v, min(a.v, b.v));
+  }
+  friend Gradient larger(const Gradient& a, const Gradient& b) {
+    return tied(a, b, a.v > b.v, b.v > a.v, max(a.v, b.v));
+  }
   friend Gradient abs(const Gradient& a) {
     return chain(a, abs(a.v), select(a.v < T(0.0), T(-1.0), T(1.0)));
   }
@@ -136,13 +154,12 @@ struct Gradient {
     return chain(a, acos(a.v), T(-1.0) / sqrt(T(1.0) - square(a.v)));
   }
   friend Gradient atan2(const Gradient& y, const Gradient& x) {
-    const T squared = square(x.v) + square(y.v);
-    return chain(y, x, atan2(y.v, x.v), x.v / squared, -(y.v / squared));
+    const T squared = square(x.v) + square(y.v), cut = slope_of_cut(y.v, x.v);
+    return chain(y, x, atan2(y.v, x.v), x.v / squared + cut, cut - y.v / squared);
   }
   friend Gradient floor(const Gradient& a) {
-    Gradient g(0.0);
-    g.v = floor(a.v);
-    return g;
+    const T whole = floor(a.v);
+    return chain(a, whole, slope_of_steps(whole));
   }
   friend Gradient pow(const Gradient& a, const Gradient& b) {
     const T power = pow(a.v, b.v);
@@ -151,5 +168,13 @@ struct Gradient {
     return chain(a, b, power, b.v * pow(a.v, b.v - T(1.0)), by_b);
   }
 };
+
+template <int N>
+Gradient<Interval, N> jump(IntervalMask mask, const Gradient<Interval, N>& a,
+                           const Gradient<Interval, N>& b) {
+  Gradient<Interval, N> g = select(mask, a, b);
+  if (mask.can_hold && mask.can_fail) g.d.fill(Interval::all());
+  return g;
+}
 
 }  // namespace sardf

@@ -71,6 +71,10 @@ T shortcut(IntervalMask mask, const T& cheap, Full full) {
 inline Interval min(Interval a, Interval b) { return {min(a.lo, b.lo), min(a.hi, b.hi)}; }
 inline Interval max(Interval a, Interval b) { return {max(a.lo, b.lo), max(a.hi, b.hi)}; }
 inline Interval freeze(Interval a) { return a; }
+inline Interval slope_of_cut(Interval y, Interval x) {
+  return x.lo <= 0 && y.lo <= 0 && y.hi >= 0 ? Interval::all() : 0;
+}
+inline Interval slope_of_steps(Interval a) { return a.lo < a.hi ? Interval{0, infinity} : 0; }
 Interval abs(Interval a);
 Interval square(Interval a);
 Interval cosine(Interval a, Interval b);

@@ -27,6 +27,33 @@ inline double freeze(double a) { return a; }
 /// a / b for a component a of a vector of length b: a direction cosine.
 inline double cosine(double a, double b) { return a / b; }
 
+/// min and max for formulas that are smooth across a = b: where both are equal, the derivative is
+/// the mean of theirs.
+template <class T>
+T smaller(const T& a, const T& b) {
+  return min(a, b);
+}
+template <class T>
+T larger(const T& a, const T& b) {
+  return max(a, b);
+}
+
+/// What has no bounded slope over an interval that holds the change: select between values that
+/// need not meet where the mask changes, a step function (the slope where its value is this), and
+/// the angle of (x, y) across its cut y = 0, x < 0 (what the cut adds to its slope).
+template <class Mask, class T>
+T jump(const Mask& mask, const T& a, const T& b) {
+  return select(mask, a, b);
+}
+template <class T>
+T slope_of_steps(const T&) {
+  return T(0.0);
+}
+template <class T>
+T slope_of_cut(const T&, const T&) {
+  return T(0.0);
+}
+
 /// The length of the vector with these components.
 template <class T>
 T length(const T& a, const T& b) {

@@ -1,0 +1,49 @@
+// Terms as the text of POV-Ray functions.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "povray_gen/let_plan.hpp"
+#include "povray_gen/names.hpp"
+#include "povray_gen/terms.hpp"
+
+namespace sardf::povray {
+
+/// What the inputs of a function are called.
+enum class InputNames { coordinates, parameters };  // x, y, z; or as Names::parameter
+
+/// Collects `#declare NAME = function(...) {...}` texts, each after those that it calls. Helper
+/// functions of equal text are one.
+class FunctionPrinter {
+ public:
+  explicit FunctionPrinter(Names& names) : names_(names) {}
+
+  /// Declares `name` as the term `root`, a function of the terms 0 ... inputs - 1, which are the
+  /// inputs, and the helpers it needs as name_1, name_2, ... Throws Error when POV-Ray could not
+  /// evaluate it.
+  void declare(const std::string& name, const Terms& terms, int root, int inputs,
+               InputNames input_names);
+
+  const std::string& text() const { return text_; }
+
+ private:
+  friend class FamilyPrinter;
+  struct Call {
+    std::string name;
+    int depth = 0;  // of calls inside each other
+  };
+  /// The function with this signature and body; declared now unless there is one.
+  Call helper(const std::string& base, const std::string& signature, const std::string& body,
+              int depth);
+  void add(const std::string& name, const std::string& signature, const std::string& body,
+           int depth);
+
+  Names& names_;
+  std::string text_;
+  std::map<std::string, std::string> known_;  // signature and body -> name
+  std::map<std::string, int> depth_;
+};
+
+}  // namespace sardf::povray

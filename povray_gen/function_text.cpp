@@ -1,0 +1,153 @@
+#include "povray_gen/function_text.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "sardf/error.hpp"
+
+namespace sardf::povray {
+
+namespace {
+
+// A call of a helper is no shorter than this many operators.
+constexpr int inlined_operations = 3;
+
+bool is_operation(const Node* node) { return node->type == Node::Type::operation; }
+
+// The nodes of one function's graph, inputs before their users, with their numbers of uses.
+class Nodes {
+ public:
+  explicit Nodes(const Expression& root) : order_(topological_order(std::span(&root, 1))) {
+    for (size_t i = 0; i < order_.size(); ++i) position_[order_[i]] = int(i);
+    uses_.assign(order_.size(), 0);
+    for (const Node* node : order_) {
+      for (const Expression& input : node->arguments()) ++uses_[at(input)];
+    }
+  }
+
+  const std::vector<const Node*>& order() const { return order_; }
+  int at(const Expression& expression) const { return position_.at(expression.get()); }
+
+  // Whether nothing below the node is used but by the node and what is below it.
+  bool is_private(int node) const {
+    std::unordered_map<int, int> inner_uses;
+    std::vector<int> pending{node};
+    while (!pending.empty()) {
+      const Node* next = order_[pending.back()];
+      pending.pop_back();
+      for (const Expression& input : next->arguments()) {
+        if (is_operation(input.get()) && ++inner_uses[at(input)] == 1) pending.push_back(at(input));
+      }
+    }
+    return std::all_of(inner_uses.begin(), inner_uses.end(),
+                       [&](const auto& use) { return use.second == uses_[use.first]; });
+  }
+
+ private:
+  std::vector<const Node*> order_;
+  std::unordered_map<const Node*, int> position_;
+  std::vector<int> uses_;
+};
+
+}  // namespace
+
+std::vector<std::string> FunctionWriter::declare(std::span<const NamedExpression> expressions) {
+  std::vector<Expression> roots;
+  for (const NamedExpression& named : expressions) roots.push_back(named.expression);
+  std::unordered_map<const Node*, size_t> position;
+  for (const Node* node : topological_order(roots)) position.try_emplace(node, position.size());
+  std::vector<size_t> order(roots.size());
+  std::iota(order.begin(), order.end(), size_t(0));
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+    return position.at(roots[a].get()) < position.at(roots[b].get());
+  });
+  std::vector<std::string> out(roots.size());
+  for (size_t i : order) out[i] = declare(expressions[i]);
+  return out;
+}
+
+std::string FunctionWriter::declare(const NamedExpression& expression) {
+  try {
+    return declare_function(names_.unique(expression.name), expression.expression);
+  } catch (const Error& error) {
+    throw Error("'" + expression.name + "' cannot be written for POV-Ray: " + error.message,
+                error.file, error.line, error.pointer);
+  }
+}
+
+std::string FunctionWriter::declare_function(const std::string& name,
+                                             const Expression& expression) {
+  Terms terms;
+  for (int axis = 0; axis < 3; ++axis) terms.input(axis);
+  int root;
+  if (const auto known = named_.find(expression.get()); known != named_.end()) {
+    root = terms.apply(known->second, {0, 1, 2});
+  } else {
+    root = add_terms(terms, expression);
+    if (is_operation(expression.get())) {
+      named_[expression.get()] = name;
+      kept_alive_.push_back(expression);
+    }
+  }
+  printer_.declare(name, terms, root, 3, InputNames::coordinates);
+  return name;
+}
+
+int FunctionWriter::add_terms(Terms& terms, const Expression& root) {
+  const Nodes nodes(root);
+  const size_t n = nodes.order().size();
+  std::vector<bool> needed(n, false), called(n, false);
+  needed[n - 1] = true;
+  for (size_t i = n; i-- > 0;) {
+    if (!needed[i]) continue;
+    called[i] = named_.contains(nodes.order()[i]) && nodes.is_private(int(i));
+    if (called[i]) continue;
+    for (const Expression& input : nodes.order()[i]->arguments()) needed[nodes.at(input)] = true;
+  }
+  std::vector<int> term(n, -1);
+  for (size_t i = 0; i < n; ++i) {
+    const Node* node = nodes.order()[i];
+    if (!needed[i]) continue;
+    if (called[i]) {
+      term[i] = terms.apply(named_.at(node), {0, 1, 2});
+    } else if (node->type == Node::Type::constant) {
+      term[i] = terms.number(node->value);
+    } else if (node->type == Node::Type::coordinate) {
+      term[i] = terms.input(node->axis);
+    } else {
+      std::vector<int> inputs;
+      for (const Expression& input : node->arguments()) inputs.push_back(term[nodes.at(input)]);
+      term[i] = add_call(terms, *node->operation, inputs);
+    }
+  }
+  return term[n - 1];
+}
+
+int FunctionWriter::add_call(Terms& terms, const Operation& operation,
+                             std::span<const int> inputs) {
+  const OperationInfo& info = operation.info();
+  const auto [known, added] = operations_.try_emplace({info.name, operation.numbers()});
+  if (added) {
+    Terms own;
+    std::vector<int> own_inputs;
+    for (int i = 0; i < info.arity; ++i) own_inputs.push_back(own.input(i));
+    Trace trace(info.arity);
+    operation.record(trace);
+    const int root = own.append(trace, own_inputs);
+    if (own.operations(root, inlined_operations + 1) > inlined_operations) {
+      const bool of_space =
+          info.kind == Kind::solid || info.kind == Kind::plane || info.kind == Kind::feature;
+      known->second = names_.numbered(info.name);
+      printer_.declare(known->second, own, root, info.arity,
+                       of_space ? InputNames::coordinates : InputNames::parameters);
+    }
+  }
+  if (!known->second.empty()) {
+    return terms.apply(known->second, std::vector<int>(inputs.begin(), inputs.end()));
+  }
+  Trace trace(info.arity);
+  operation.record(trace);
+  return terms.append(trace, inputs);
+}
+
+}  // namespace sardf::povray

@@ -8,9 +8,22 @@ import bpy
 from mathutils import Matrix
 
 NAME = "sardf camera"
-POSITIVE = ("lens", "sensor_width", "sensor_height", "ortho_scale", "clip_start", "clip_end")
-SHIFTS = ("shift_x", "shift_y")
+# What a camera file may leave out, as the core reads it; lengths in mm or scene units.
+DEFAULTS = {
+    "type": "PERSP",
+    "sensor_fit": "AUTO",
+    "lens": 50.0,
+    "sensor_width": 36.0,
+    "sensor_height": 24.0,
+    "ortho_scale": 1.0,
+    "shift_x": 0.0,
+    "shift_y": 0.0,
+    "clip_start": 0.1,
+    "clip_end": 1000.0,
+}
 CHOICES = {"type": ("PERSP", "ORTHO"), "sensor_fit": ("HORIZONTAL", "VERTICAL", "AUTO")}
+SHIFTS = ("shift_x", "shift_y")
+POSITIVE = tuple(key for key in DEFAULTS if key not in CHOICES and key not in SHIFTS)
 
 
 class CameraError(Exception):
@@ -26,6 +39,9 @@ def read(path):
         raise CameraError(f"{path}: cannot be read: {error.strerror}") from error
     except ValueError as error:
         raise CameraError(f"{path}: is not JSON: {error}") from error
+    if not isinstance(camera, dict):
+        raise CameraError(f"{path}: expected an object with the keys of camera.json")
+    camera = DEFAULTS | camera
     problem = _problem(camera)
     if problem:
         raise CameraError(f"{path}: {problem}")
@@ -33,22 +49,20 @@ def read(path):
 
 
 def _problem(camera):
-    if not isinstance(camera, dict):
-        return "expected an object with the keys of camera.json"
     for key in POSITIVE:
-        if not (_is_number(camera.get(key)) and camera[key] > 0):
-            return f"'{key}' must be a positive number, found {camera.get(key)!r}"
+        if not (_is_number(camera[key]) and camera[key] > 0):
+            return f"'{key}' must be a positive number, found {camera[key]!r}"
     for key in SHIFTS:
-        if not _is_number(camera.get(key)):
-            return f"'{key}' must be a number, found {camera.get(key)!r}"
+        if not _is_number(camera[key]):
+            return f"'{key}' must be a number, found {camera[key]!r}"
     rows = camera.get("matrix_world")
     if not isinstance(rows, list) or [len(r) for r in rows if isinstance(r, list)] != [4] * 4:
         return "'matrix_world' must be a list of 4 rows of 4 numbers"
     if not all(_is_number(value) for row in rows for value in row):
         return "'matrix_world' holds something that is not a finite number"
     for key, accepted in CHOICES.items():
-        if camera.get(key) not in accepted:
-            return f"'{key}' must be one of {', '.join(accepted)}, found {camera.get(key)!r}"
+        if camera[key] not in accepted:
+            return f"'{key}' must be one of {', '.join(accepted)}, found {camera[key]!r}"
     return ""
 
 

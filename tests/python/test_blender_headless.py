@@ -286,10 +286,10 @@ CAMERAS = {
     "no JSON": ("{", "is not JSON"),
     "a list": ("[]", "expected an object"),
     "negative lens": ('{"lens": -1}', "'lens' must be a positive number"),
-    "no matrix": (
-        '{"lens": 50, "sensor_width": 36, "sensor_height": 24, "ortho_scale": 1, "clip_start": 1,'
-        ' "clip_end": 9, "shift_x": 0, "shift_y": 0}',
-        "'matrix_world' must be a list of 4 rows",
+    "no matrix": ("{}", "'matrix_world' must be a list of 4 rows"),
+    "unknown type": (
+        '{"matrix_world": [[1,0,0,0],[0,1,0,0],[0,0,1,9],[0,0,0,1]], "type": "PANO"}',
+        "'type' must be one of PERSP, ORTHO, found 'PANO'",
     ),
 }
 

@@ -1,0 +1,227 @@
+#include "sardf/bake.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <numeric>
+#include <optional>
+
+#include "sardf/bake_stages.hpp"
+#include "sardf/error.hpp"
+#include "sardf/evaluate.hpp"
+
+namespace sardf {
+namespace {
+
+constexpr size_t block_size = Evaluator::block_size;
+/// Share of the mesh's diagonal within which a point counts as lying on the solid's surface; below
+/// the 1e-6 within which a point counts as lying in a region.
+constexpr double on_surface = 2e-7;
+/// Points tried beside one where a channel is not finite (a centre, an axis, an edge), as shares of
+/// the mesh's diagonal along directions that no symmetric shape prefers.
+constexpr double nudge_length = 1e-5;
+constexpr Vec3 nudges[] = {{0.61, 0.47, 0.64}, {-0.73, 0.31, 0.61}, {0.29, -0.83, -0.48}};
+
+double diagonal(const Mesh& mesh) {
+  BoundingBox box{mesh.vertices[0], mesh.vertices[0]};
+  for (const Vec3& v : mesh.vertices)
+    for (size_t axis = 0; axis < 3; ++axis) {
+      box.lo[axis] = std::min(box.lo[axis], v[axis]);
+      box.hi[axis] = std::max(box.hi[axis], v[axis]);
+    }
+  return box.diagonal();
+}
+
+/// Some channels of a bake: one evaluator for all their components, and their images.
+class Group {
+ public:
+  Group(std::span<const BakeChannel> channels, int size) : channels_(channels) {
+    std::vector<Expression> outputs;
+    for (const BakeChannel& channel : channels) {
+      const int components = static_cast<int>(channel.components.size());
+      images.push_back({size, size, components, {}});
+      images.back().samples.resize(size_t(size) * size * components);
+      outputs.insert(outputs.end(), channel.components.begin(), channel.components.end());
+    }
+    evaluator_ = Evaluator(outputs);
+    undefined = std::vector<std::atomic<size_t>>(channels.size());
+  }
+
+  /// Evaluates points[first, first + n) and writes their texels.
+  void evaluate(const baking::TilePoints& points, size_t first, size_t n, double nudge) {
+    std::vector<float> storage(evaluator_.outputs() * block_size);
+    std::vector<float*> out(evaluator_.outputs());
+    for (size_t k = 0; k < out.size(); ++k) out[k] = storage.data() + k * block_size;
+    evaluator_.block(&points.point[0][first], &points.point[1][first], &points.point[2][first], n,
+                     out.data());
+    for (size_t i = 0; i < n; ++i) {
+      const bool finite = std::all_of(out.begin(), out.end(),
+                                      [i](const float* row) { return std::isfinite(row[i]); });
+      if (!finite) repair(points, first + i, nudge, i, out);
+    }
+    size_t row = 0;
+    for (Image& image : images)
+      for (int c = 0; c < image.channels; ++c, ++row)
+        for (size_t i = 0; i < n; ++i) {
+          const int texel = points.texel[first + i];
+          image.at(points.x + texel % baking::tile_size, points.y + texel / baking::tile_size)[c] =
+              out[row][i];
+        }
+  }
+
+  std::vector<Image> images;
+  std::vector<std::atomic<size_t>> undefined;
+
+ private:
+  /// Replaces what is not finite by the double path's value there or close by, at last by 0.
+  void repair(const baking::TilePoints& points, size_t p, double nudge, size_t i,
+              const std::vector<float*>& out) {
+    const Vec3 point{points.point[0][p], points.point[1][p], points.point[2][p]};
+    std::vector<double> values(out.size());
+    const auto take = [&](const Vec3& from) {
+      evaluator_.values(from, values.data());
+      for (size_t k = 0; k < out.size(); ++k)
+        if (!std::isfinite(out[k][i])) out[k][i] = static_cast<float>(values[k]);
+    };
+    take(point);
+    for (const Vec3& direction : nudges) take(point + nudge * direction);
+    size_t row = 0;
+    for (size_t channel = 0; channel < channels_.size(); ++channel) {
+      bool lost = false;
+      for (int c = 0; c < images[channel].channels; ++c, ++row)
+        if (!std::isfinite(out[row][i])) {
+          lost = true;
+          out[row][i] = 0;
+        }
+      undefined[channel] += lost;
+    }
+  }
+
+  std::span<const BakeChannel> channels_;
+  Evaluator evaluator_;
+};
+
+/// work(tile) for all tiles on all threads, reporting shares [from, to].
+template <class Work>
+void for_tiles(size_t tiles, const Progress& progress, double from, double to, Work work) {
+  std::atomic<bool> cancelled{false};
+  std::mutex reporting;
+  size_t done = 0;
+  tbb::parallel_for(size_t(0), tiles, [&](size_t tile) {
+    if (cancelled) return;
+    work(tile);
+    if (!progress) return;
+    const std::scoped_lock lock(reporting);
+    const double share = double(++done) / double(tiles);
+    if (!cancelled && !progress(from + (to - from) * share)) cancelled = true;
+  });
+  if (cancelled) throw Cancelled();
+}
+
+class Baker {
+ public:
+  Baker(const baking::UvLayout& layout, const Expression& solid) : layout_(layout) {
+    if (solid) solid_.emplace(solid);
+    const double length = diagonal(*layout.mesh);
+    tolerance_ = static_cast<float>(on_surface * length);
+    nudge_ = nudge_length * length;
+    covered.assign(size_t(layout.size) * layout.size, 0);
+  }
+
+  void run(Group& group, const Progress& progress, double from, double to) {
+    for_tiles(layout_.tiles(), progress, from, to, [&](size_t tile) {
+      const auto points = std::make_unique<baking::TilePoints>();
+      baking::find_texels(layout_, tile, *points);
+      for (size_t first = 0; first < points->count; first += block_size) {
+        const size_t n = std::min(block_size, points->count - first);
+        if (solid_) baking::project(*solid_, *points, first, n, tolerance_);
+        group.evaluate(*points, first, n, nudge_);
+      }
+      for (size_t i = 0; i < points->count; ++i) {
+        const int texel = points->texel[i], y = points->y + texel / baking::tile_size;
+        covered[size_t(y) * layout_.size + points->x + texel % baking::tile_size] = 1;
+      }
+    });
+  }
+
+  std::vector<unsigned char> covered;
+
+ private:
+  const baking::UvLayout& layout_;
+  std::optional<Evaluator> solid_;
+  float tolerance_ = 0;
+  double nudge_ = 0;
+};
+
+/// How many of the channels, from the first on, have images of at most `memory` bytes together.
+size_t count_within(std::span<const BakeChannel> channels, int size, size_t memory) {
+  size_t count = 0, bytes = 0;
+  for (const BakeChannel& channel : channels) {
+    bytes += sizeof(float) * channel.components.size() * size_t(size) * size_t(size);
+    if (bytes > memory && count > 0) break;
+    ++count;
+  }
+  return count;
+}
+
+}  // namespace
+
+BakeReport bake(const TexelMap& texels, const Expression& solid,
+                std::span<const BakeChannel> channels, const BakeConsumer& take,
+                const Progress& progress, size_t memory) {
+  for (const BakeChannel& channel : channels)
+    if (channel.components.empty())
+      throw Error("the channel '" + channel.name + "' has no components to bake");
+  Baker baker(texels.layout(), solid);
+  BakeReport report;
+  for (size_t first = 0; first < channels.size();) {
+    const size_t n = count_within(channels.subspan(first), texels.size(), memory);
+    Group group(channels.subspan(first, n), texels.size());
+    const double all = double(channels.size());
+    baker.run(group, progress, double(first) / all, double(first + n) / all);
+    if (first == 0) {
+      report.covered = size_t(std::count(baker.covered.begin(), baker.covered.end(), 1));
+      if (report.covered == 0)
+        throw Error("no texel lies on the mesh: its texture coordinates are outside [0, 1]");
+    }
+    for (size_t i = 0; i < n; ++i) {
+      report.undefined.push_back(group.undefined[i]);
+      take(first + i, std::move(group.images[i]), baker.covered);
+      group.images[i] = {};
+    }
+    first += n;
+  }
+  return report;
+}
+
+std::vector<Image> bake_images(const TexelMap& texels, const Expression& solid,
+                               std::span<const BakeChannel> channels, const Progress& progress) {
+  std::vector<Image> images;
+  const auto take = [&](size_t, Image&& image, const std::vector<unsigned char>& covered) {
+    images.push_back(std::move(image));
+    fill_with_mean(images.back(), covered);
+  };
+  bake(texels, solid, channels, take, progress, std::numeric_limits<size_t>::max());
+  return images;
+}
+
+void fill_with_mean(Image& image, const std::vector<unsigned char>& covered) {
+  std::vector<double> mean(size_t(image.channels), 0);
+  size_t count = 0;
+  for (size_t i = 0; i < covered.size(); ++i) {
+    if (!covered[i]) continue;
+    ++count;
+    for (size_t c = 0; c < mean.size(); ++c) mean[c] += image.samples[i * mean.size() + c];
+  }
+  if (count == 0) throw Error("no texel of the texture is covered, so there is no mean");
+  for (double& sum : mean) sum /= double(count);
+  for (size_t i = 0; i < covered.size(); ++i)
+    if (!covered[i])
+      for (size_t c = 0; c < mean.size(); ++c)
+        image.samples[i * mean.size() + c] = static_cast<float>(mean[c]);
+}
+
+}  // namespace sardf

@@ -1,0 +1,81 @@
+// The stages of a bake: borders of the UV map, texels of one tile, projection on the solid.
+//
+// Texel coordinates here: x right and y down, in texels, whole numbers at texel centres.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "sardf/evaluate.hpp"
+#include "sardf/mesh.hpp"
+
+namespace sardf::baking {
+
+/// Edge of the square tiles in which texels are worked on.
+inline constexpr int tile_size = 64;
+inline constexpr int tile_texels = tile_size * tile_size;
+
+/// The surface point's derivatives by texel coordinates.
+struct Slopes {
+  Vec3 by_x{}, by_y{};
+};
+
+/// An edge where the UV map ends, from a to b.
+struct Border {
+  Vec2 a{}, b{};  // texel coordinates
+  uint32_t face = 0;
+  std::array<uint32_t, 2> vertex{};  // mesh vertices
+  std::array<uint32_t, 2> slopes{};  // indices into UvLayout::slopes
+  bool crease = false;
+};
+
+/// Which items touch each tile.
+struct TileBins {
+  std::vector<uint32_t> start, items;
+  std::span<const uint32_t> of(size_t tile) const {
+    return {items.data() + start[tile], items.data() + start[tile + 1]};
+  }
+};
+
+struct UvLayout {
+  const Mesh* mesh = nullptr;
+  int size = 0;
+  double reach = 0;  // texels beyond a border that get a value
+  int tiles_across = 0;
+  std::vector<Border> borders;
+  std::vector<Slopes> slopes;  // means over the triangles around each vertex of a border
+  TileBins faces, borders_near;
+  size_t tiles() const { return size_t(tiles_across) * tiles_across; }
+};
+
+/// Texel coordinates of a face's corner.
+inline Vec2 texel_of(const Mesh& mesh, size_t corner, int size) {
+  const Vec2& uv = mesh.corner_uv[corner];
+  return {uv[0] * size - 0.5, (1 - uv[1]) * size - 0.5};
+}
+
+/// Finds the borders and the slopes at their vertices. `report` throws to cancel.
+void find_borders(UvLayout& layout, const std::function<void()>& report);
+/// Sorts faces and borders into the tiles that they touch.
+void fill_bins(UvLayout& layout);
+
+/// The covered texels of one tile and their points.
+struct TilePoints {
+  int x = 0, y = 0, width = 0, height = 0;  // of the tile, in texels
+  size_t count = 0;
+  std::array<uint16_t, tile_texels> texel;               // row * tile_size + column, ascending
+  std::array<std::array<float, tile_texels>, 3> point;   // by coordinate
+  std::array<std::array<float, tile_texels>, 3> normal;  // of the face
+  std::array<float, tile_texels> limit;                  // how far the point may be moved
+};
+
+/// Fills `points` for a tile.
+void find_texels(const UvLayout& layout, size_t tile, TilePoints& points);
+
+/// Moves points[first, first + n) onto the zero set of `solid`; n <= Evaluator::block_size.
+void project(const Evaluator& solid, TilePoints& points, size_t first, size_t n, float tolerance);
+
+}  // namespace sardf::baking

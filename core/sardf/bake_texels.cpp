@@ -1,0 +1,228 @@
+// The texels that lie on the mesh or beside it, tile by tile, and their points.
+
+#include <algorithm>
+#include <cmath>
+
+#include "sardf/bake_stages.hpp"
+
+namespace sardf::baking {
+namespace {
+
+/// Texels first to last, both included; empty when first > last.
+struct TexelBox {
+  int x0, y0, x1, y1;
+  void limit(const TexelBox& to) {
+    x0 = std::max(x0, to.x0);
+    y0 = std::max(y0, to.y0);
+    x1 = std::min(x1, to.x1);
+    y1 = std::min(y1, to.y1);
+  }
+};
+
+/// The texels whose centres lie in the bounds of the points, grown by `margin`, within `within`.
+template <size_t N>
+TexelBox texels_around(const std::array<Vec2, N>& points, double margin, const TexelBox& within) {
+  Vec2 lo = points[0], hi = points[0];
+  for (const Vec2& p : points) {
+    lo = {std::min(lo[0], p[0]), std::min(lo[1], p[1])};
+    hi = {std::max(hi[0], p[0]), std::max(hi[1], p[1])};
+  }
+  // Limited as numbers first: coordinates far outside the image do not fit an int.
+  const auto limited = [](double a) { return static_cast<int>(std::clamp(a, -1e6, 1e6)); };
+  TexelBox box{limited(std::ceil(lo[0] - margin)), limited(std::ceil(lo[1] - margin)),
+               limited(std::floor(hi[0] + margin)), limited(std::floor(hi[1] + margin))};
+  box.limit(within);
+  return box;
+}
+
+TexelBox image_box(const UvLayout& layout) { return {0, 0, layout.size - 1, layout.size - 1}; }
+
+std::array<Vec2, 4> texels_of_face(const UvLayout& layout, size_t face) {
+  std::array<Vec2, 4> result;
+  for (size_t k = 0; k < 4; ++k) result[k] = texel_of(*layout.mesh, 4 * face + k, layout.size);
+  return result;
+}
+
+/// Rounding of a centre on an edge must not leave a crack between two triangles.
+constexpr double edge_margin = 1e-9;
+
+template <class BoxOf>
+TileBins make_bins(const UvLayout& layout, size_t items, BoxOf box_of) {
+  const auto for_tiles = [&](size_t item, auto visit) {
+    const TexelBox box = box_of(item);
+    if (box.x0 > box.x1 || box.y0 > box.y1) return;
+    for (int y = box.y0 / tile_size; y <= box.y1 / tile_size; ++y)
+      for (int x = box.x0 / tile_size; x <= box.x1 / tile_size; ++x)
+        visit(size_t(y) * layout.tiles_across + x);
+  };
+  TileBins bins;
+  bins.start.assign(layout.tiles() + 1, 0);
+  for (size_t i = 0; i < items; ++i) for_tiles(i, [&](size_t tile) { ++bins.start[tile + 1]; });
+  for (size_t t = 0; t < layout.tiles(); ++t) bins.start[t + 1] += bins.start[t];
+  bins.items.resize(bins.start.back());
+  std::vector<uint32_t> at(bins.start.begin(), bins.start.end() - 1);
+  for (size_t i = 0; i < items; ++i)
+    for_tiles(i, [&](size_t tile) { bins.items[at[tile]++] = static_cast<uint32_t>(i); });
+  return bins;
+}
+
+double longest_edge(const Mesh& mesh, uint32_t face) {
+  const auto& v = mesh.faces[face];
+  double longest = 0;
+  for (size_t k = 0; k < 4; ++k)
+    longest = std::max(longest, norm(mesh.vertices[v[(k + 1) % 4]] - mesh.vertices[v[k]]));
+  return longest;
+}
+
+Vec3 unit_or_zero(const Vec3& a) {
+  const double length = norm(a);
+  return length > 0 ? (1 / length) * a : Vec3{};
+}
+
+/// One tile's texels while they are being found.
+class TileRaster {
+ public:
+  TileRaster(const UvLayout& layout, size_t tile)
+      : layout_(layout), mesh_(*layout.mesh), box_(image_box(layout)) {
+    const int x = static_cast<int>(tile) % layout.tiles_across * tile_size;
+    const int y = static_cast<int>(tile) / layout.tiles_across * tile_size;
+    box_.limit({x, y, x + tile_size - 1, y + tile_size - 1});
+    on_face_.fill(false);
+    nearest_.fill(nothing);
+  }
+
+  void add_face(uint32_t face) {
+    const std::array<Vec2, 4> t = texels_of_face(layout_, face);
+    const auto& v = mesh_.faces[face];
+    const double limit = 0.5 * longest_edge(mesh_, face);
+    for (size_t k = 1; k < 3; ++k)
+      add_triangle({t[0], t[k], t[k + 1]},
+                   {mesh_.vertices[v[0]], mesh_.vertices[v[k]], mesh_.vertices[v[k + 1]]}, limit);
+  }
+
+  void add_border(uint32_t index) {
+    const Border& border = layout_.borders[index];
+    const TexelBox box = texels_around<2>({border.a, border.b}, layout_.reach, box_);
+    const double reach = layout_.reach * layout_.reach;
+    for (int y = box.y0; y <= box.y1; ++y)
+      for (int x = box.x0; x <= box.x1; ++x) {
+        const size_t i = local(x, y);
+        if (on_face_[i]) continue;
+        const Vec2 from = offset(border, x, y, along(border, x, y));
+        const double squared = from[0] * from[0] + from[1] * from[1];
+        if (squared > reach || (nearest_[i] != nothing && squared >= distance_[i])) continue;
+        nearest_[i] = index;
+        distance_[i] = squared;
+      }
+  }
+
+  void collect(TilePoints& out) {
+    out.x = box_.x0;
+    out.y = box_.y0;
+    out.width = box_.x1 - box_.x0 + 1;
+    out.height = box_.y1 - box_.y0 + 1;
+    out.count = 0;
+    for (int y = box_.y0; y <= box_.y1; ++y)
+      for (int x = box_.x0; x <= box_.x1; ++x) {
+        const size_t i = local(x, y);
+        if (!on_face_[i] && nearest_[i] == nothing) continue;
+        if (!on_face_[i]) continue_surface(i, x, y);
+        out.texel[out.count] = static_cast<uint16_t>(i);
+        for (size_t axis = 0; axis < 3; ++axis) {
+          out.point[axis][out.count] = point_[i][axis];
+          out.normal[axis][out.count] = normal_[i][axis];
+        }
+        out.limit[out.count++] = limit_[i];
+      }
+  }
+
+ private:
+  using Floats = std::array<float, 3>;
+  static constexpr uint32_t nothing = UINT32_MAX;
+
+  static Floats floats(const Vec3& a) { return {float(a[0]), float(a[1]), float(a[2])}; }
+
+  size_t local(int x, int y) const { return size_t(y - box_.y0) * tile_size + size_t(x - box_.x0); }
+
+  void add_triangle(const std::array<Vec2, 3>& t, const std::array<Vec3, 3>& p, double limit) {
+    const Vec2 s{t[1][0] - t[0][0], t[1][1] - t[0][1]}, r{t[2][0] - t[0][0], t[2][1] - t[0][1]};
+    const double determinant = s[0] * r[1] - s[1] * r[0];
+    if (determinant == 0) return;
+    const TexelBox box = texels_around(t, edge_margin, box_);
+    const Vec3 e1 = p[1] - p[0], e2 = p[2] - p[0];
+    const Floats normal = floats(unit_or_zero(cross(e1, e2)));
+    const double inverse = 1 / determinant;
+    for (int y = box.y0; y <= box.y1; ++y) {
+      const double dy = y - t[0][1];
+      for (int x = box.x0; x <= box.x1; ++x) {
+        const double dx = x - t[0][0];
+        const double b = (dx * r[1] - dy * r[0]) * inverse, c = (s[0] * dy - s[1] * dx) * inverse;
+        if (b < -edge_margin || c < -edge_margin || b + c > 1 + edge_margin) continue;
+        const size_t i = local(x, y);
+        if (on_face_[i]) continue;
+        on_face_[i] = true;
+        point_[i] = floats(p[0] + b * e1 + c * e2);
+        normal_[i] = normal;
+        limit_[i] = float(limit);
+      }
+    }
+  }
+
+  /// Where on the border, in [0, 1], the point nearest to texel (x, y) lies.
+  static double along(const Border& border, int x, int y) {
+    const double ex = border.b[0] - border.a[0], ey = border.b[1] - border.a[1];
+    const double length = ex * ex + ey * ey;
+    if (length == 0) return 0;
+    return std::clamp(((x - border.a[0]) * ex + (y - border.a[1]) * ey) / length, 0.0, 1.0);
+  }
+  static Vec2 offset(const Border& border, int x, int y, double t) {
+    return {x - border.a[0] - t * (border.b[0] - border.a[0]),
+            y - border.a[1] - t * (border.b[1] - border.a[1])};
+  }
+
+  void continue_surface(size_t i, int x, int y) {
+    const Border& border = layout_.borders[nearest_[i]];
+    const double t = along(border, x, y);
+    const Vec2 d = offset(border, x, y, t);
+    const auto mixed = [t](const Vec3& a, const Vec3& b) { return a + t * (b - a); };
+    const Slopes &at_a = layout_.slopes[border.slopes[0]], &at_b = layout_.slopes[border.slopes[1]];
+    const Vec3 by_x = mixed(at_a.by_x, at_b.by_x), by_y = mixed(at_a.by_y, at_b.by_y);
+    const Vec3 beyond = d[0] * by_x + d[1] * by_y;
+    point_[i] =
+        floats(mixed(mesh_.vertices[border.vertex[0]], mesh_.vertices[border.vertex[1]]) + beyond);
+    normal_[i] = floats(unit_or_zero(cross(by_x, by_y)));
+    // Beyond a crease the zero set belongs to another face.
+    limit_[i] =
+        border.crease ? 0.0f : float(0.5 * (longest_edge(mesh_, border.face) + norm(beyond)));
+  }
+
+  const UvLayout& layout_;
+  const Mesh& mesh_;
+  TexelBox box_;
+  std::array<bool, tile_texels> on_face_;
+  std::array<uint32_t, tile_texels> nearest_;  // border
+  std::array<double, tile_texels> distance_;   // to it, squared
+  std::array<Floats, tile_texels> point_, normal_;
+  std::array<float, tile_texels> limit_;
+};
+
+}  // namespace
+
+void fill_bins(UvLayout& layout) {
+  const TexelBox image = image_box(layout);
+  layout.faces = make_bins(layout, layout.mesh->faces.size(), [&](size_t face) {
+    return texels_around(texels_of_face(layout, face), edge_margin, image);
+  });
+  layout.borders_near = make_bins(layout, layout.borders.size(), [&](size_t i) {
+    return texels_around<2>({layout.borders[i].a, layout.borders[i].b}, layout.reach, image);
+  });
+}
+
+void find_texels(const UvLayout& layout, size_t tile, TilePoints& points) {
+  TileRaster raster(layout, tile);
+  for (const uint32_t face : layout.faces.of(tile)) raster.add_face(face);
+  for (const uint32_t border : layout.borders_near.of(tile)) raster.add_border(border);
+  raster.collect(points);
+}
+
+}  // namespace sardf::baking

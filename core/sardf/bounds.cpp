@@ -1,0 +1,209 @@
+#include "sardf/bounds.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sardf/error.hpp"
+#include "sardf/short_number.hpp"
+
+namespace sardf {
+
+namespace {
+
+// The search starts with the cube of twice this edge length around the origin.
+constexpr double farthest = 0x1p40;
+// A solid that reaches the cube's surface after this many halvings is called unbounded.
+constexpr int unbounded_level = 5;
+// Halvings after which what is left is smaller than any solid with meaning.
+constexpr int last_level = 80;
+// Cells along the longest side of the hull when the faces are moved one by one.
+constexpr double coarse_cells = 8;
+// A search that keeps more cells than this is given up.
+constexpr size_t most_cells = 50'000;
+// Boxes that one proof may look at, and how near, in diagonals, the bounds are to come.
+constexpr int proof_boxes = 800;
+constexpr double tightness = 1e-4;
+constexpr double padding = 1e-4;
+
+Error unbounded_error() {
+  return Error(
+      "the solid is unbounded, or it cannot be proven to be bounded; intersect it with a box or a "
+      "half_space");
+}
+
+void include(BoundingBox& hull, const BoundingBox& box) {
+  for (int axis = 0; axis < 3; ++axis) {
+    hull.lo[axis] = std::min(hull.lo[axis], box.lo[axis]);
+    hull.hi[axis] = std::max(hull.hi[axis], box.hi[axis]);
+  }
+}
+
+double longest_side(const BoundingBox& box) {
+  const Vec3 size = box.size();
+  return std::max({size[0], size[1], size[2]});
+}
+
+class Search {
+ public:
+  Search(const Evaluator& field, const Progress& progress) : field_(field), progress_(progress) {
+    const Vec3 corner{farthest, farthest, farthest};
+    all_ = {-1.0 * corner, corner};
+    slope_ = field.slope(all_).length;
+    for (const Tape::Constant& c : field.tape().constants()) include_constant(c.value);
+    for (const Instruction& i : field.tape().instructions()) {
+      for (const double number : i.operation->numbers()) include_constant(number);
+    }
+  }
+
+  BoundingBox find() {
+    BoundingBox hull = coarse_hull();
+    hull_diagonal_ = hull.diagonal();
+    const double longest = longest_side(hull);
+    // Once more after the other faces have moved: the slabs are smaller then.
+    for (const double farthest_step : {longest, longest / 64}) {
+      for (int face = 0; face < 6; ++face) move_face(hull, face / 2, face % 2 == 1, farthest_step);
+      hull_diagonal_ = hull.diagonal();
+    }
+    return hull;
+  }
+
+  /// Whether the solid is proven to have no point in the box.
+  bool is_empty(const BoundingBox& box, int most_boxes) const {
+    const double least_side = 0.1 * tightness * hull_diagonal_;
+    std::vector<BoundingBox> open{box};
+    for (int looked_at = 0; !open.empty(); ++looked_at) {
+      const BoundingBox part = open.back();
+      open.pop_back();
+      const double middle = field_.value(part.center());
+      if (middle >= 0 || looked_at >= most_boxes) return false;
+      if (is_negative(part, middle)) continue;
+      if (longest_side(part) < least_side) return false;
+      const auto halves = split(part);
+      open.insert(open.end(), halves.begin(), halves.end());
+    }
+    return true;
+  }
+
+ private:
+  void report(double share) const {
+    if (progress_ && !progress_(share)) throw Cancelled();
+  }
+
+  void include_constant(double value) {
+    if (std::abs(value) < infinity) constants_ = std::max(constants_, std::abs(value));
+  }
+
+  // Whether the field, of which the value in the middle is given, is negative all over the box. The
+  // Lipschitz bound tells it without the cost of an interval; 4500 roundings of the largest number
+  // are set aside for the value.
+  bool is_negative(const BoundingBox& box, double middle) const {
+    const double rounding =
+        1e-12 * (std::max({norm(box.lo), norm(box.hi), constants_}) + std::abs(middle));
+    const double reach = slope_ * (0.5 * box.diagonal() * (1 + 1e-12) + rounding) + rounding;
+    return middle < -reach || field_.interval(box).hi < 0;
+  }
+
+  static std::array<BoundingBox, 2> split(const BoundingBox& box) {
+    const Vec3 size = box.size();
+    const int axis = int(std::max_element(size.begin(), size.end()) - size.begin());
+    std::array<BoundingBox, 2> halves{box, box};
+    halves[0].hi[axis] = halves[1].lo[axis] = box.center()[axis];
+    return halves;
+  }
+
+  // Halves cells until the hull of those that may hold points of the solid is resolved by a few.
+  BoundingBox coarse_hull() const {
+    std::vector<BoundingBox> cells{all_};
+    for (int level = 1; level <= last_level; ++level) {
+      report(0.4 * level / last_level);
+      cells = remaining_children(cells);
+      if (cells.empty()) throw Error("the solid is empty: its field is negative everywhere");
+      BoundingBox hull = cells[0];
+      for (const BoundingBox& cell : cells) include(hull, cell);
+      const double reach =
+          std::max({-hull.lo[0], -hull.lo[1], -hull.lo[2], hull.hi[0], hull.hi[1], hull.hi[2]});
+      if (level >= unbounded_level && reach >= farthest) throw unbounded_error();
+      if (cells.size() > most_cells) throw unbounded_error();
+      if (level > unbounded_level && longest_side(hull) >= coarse_cells * longest_side(cells[0])) {
+        return hull;
+      }
+    }
+    throw Error("the solid is empty or a single point: it has no volume");
+  }
+
+  std::vector<BoundingBox> remaining_children(const std::vector<BoundingBox>& cells) const {
+    std::vector<BoundingBox> children;
+    size_t looked_at = 0;
+    for (const BoundingBox& cell : cells) {
+      if (++looked_at % 256 == 0) report(0.2);
+      const Vec3 middle = cell.center();
+      for (int k = 0; k < 8; ++k) {
+        BoundingBox child;
+        for (int axis = 0; axis < 3; ++axis) {
+          child.lo[axis] = k >> axis & 1 ? middle[axis] : cell.lo[axis];
+          child.hi[axis] = k >> axis & 1 ? cell.hi[axis] : middle[axis];
+        }
+        if (!is_negative(child, field_.value(child.center()))) children.push_back(child);
+      }
+    }
+    return children;
+  }
+
+  // Moves one face of the hull inwards as far as the slab that it leaves is proven empty.
+  void move_face(BoundingBox& hull, int axis, bool upper, double farthest_step) const {
+    double& face = upper ? hull.hi[axis] : hull.lo[axis];
+    double inner = upper ? std::max(hull.lo[axis], face - farthest_step)
+                         : std::min(hull.hi[axis], face + farthest_step);
+    while (std::abs(face - inner) > tightness * hull_diagonal_) {
+      report(0.7);
+      const double middle = 0.5 * (face + inner);
+      BoundingBox slab = hull;
+      (upper ? slab.lo : slab.hi)[axis] = middle;
+      if (is_empty(slab, proof_boxes)) {
+        face = middle;
+      } else {
+        inner = middle;
+      }
+    }
+  }
+
+  const Evaluator& field_;
+  const Progress& progress_;
+  BoundingBox all_;
+  double slope_;
+  double constants_ = 0;  // the largest constant of the field
+  double hull_diagonal_ = 0;
+};
+
+// Throws unless what sticks out of the stated box is proven empty.
+void check_stated(const Search& search, BoundingBox& bounds, const BoundingBox& stated) {
+  for (int face = 0; face < 6; ++face) {
+    const int axis = face / 2;
+    const bool upper = face % 2 == 1;
+    const double limit = upper ? stated.hi[axis] : stated.lo[axis];
+    double& reached = upper ? bounds.hi[axis] : bounds.lo[axis];
+    if (upper ? reached <= limit : reached >= limit) continue;
+    BoundingBox outside = bounds;
+    (upper ? outside.lo : outside.hi)[axis] = limit;
+    if (!search.is_empty(outside, 20 * proof_boxes)) {
+      throw Error(std::string("the solid reaches out of its stated bounds: ") + "xyz"[axis] +
+                  (upper ? " goes up to " : " goes down to ") + short_number(reached, 6) +
+                  ", stated is " + short_number(limit, 6));
+    }
+    reached = limit;
+  }
+}
+
+}  // namespace
+
+BoundingBox certified_bounds(const Evaluator& field, const Progress& progress,
+                             const std::optional<BoundingBox>& stated) {
+  Search search(field, progress);
+  BoundingBox bounds = search.find();
+  if (stated) check_stated(search, bounds, *stated);
+  const double pad = padding * bounds.diagonal();
+  const Vec3 by{pad, pad, pad};
+  return {bounds.lo - by, bounds.hi + by};
+}
+
+}  // namespace sardf

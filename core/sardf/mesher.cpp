@@ -1,0 +1,143 @@
+#include "sardf/mesher.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "sardf/error.hpp"
+#include "sardf/mesher_stages.hpp"
+#include "sardf/short_number.hpp"
+
+namespace sardf {
+
+namespace mesher {
+
+namespace {
+
+constexpr int least_resolution = 4, most_resolution = 1'000'000;
+
+// Cells that the grid is wider than the bounds, both sides together; and where in the cells the
+// middle of the bounds comes to lie, so that planes of symmetry and round numbers do not fall on
+// grid points.
+constexpr double extra_cells = 0.8;
+constexpr Vec3 shift{0.11, 0.13, 0.07};
+
+size_t free_memory() {
+  std::ifstream info("/proc/meminfo");
+  std::string name, unit;
+  for (size_t kib; info >> name >> kib; std::getline(info, unit)) {
+    if (name == "MemAvailable:") return kib * 1024;
+  }
+  return size_t(sysconf(_SC_PHYS_PAGES)) * size_t(sysconf(_SC_PAGESIZE));
+}
+
+Grid make_grid(const BoundingBox& bounds, const MeshOptions& options) {
+  const Vec3 size = bounds.size();
+  const double longest = std::max({size[0], size[1], size[2]});
+  if (!(std::min({size[0], size[1], size[2]}) > 0) || !(longest < infinity)) {
+    throw Error("the bounds of a mesh must be finite and have positive size");
+  }
+  Grid grid;
+  if (options.cell_size != 0) {
+    if (!(options.cell_size > 0) || !(options.cell_size * most_resolution >= longest) ||
+        !(options.cell_size * least_resolution <= longest)) {
+      throw Error("cell size " + short_number(options.cell_size, 6) + " is not between " +
+                  short_number(longest / most_resolution) + " and " +
+                  short_number(longest / least_resolution) +
+                  ", the longest side of the bounds divided by " + std::to_string(most_resolution) +
+                  " and by " + std::to_string(least_resolution));
+    }
+    grid.cell = options.cell_size;
+  } else {
+    if (options.resolution < least_resolution || options.resolution > most_resolution) {
+      throw Error("resolution " + std::to_string(options.resolution) + " is not between " +
+                  std::to_string(least_resolution) + " and " + std::to_string(most_resolution));
+    }
+    grid.cell = longest / (options.resolution - extra_cells);
+  }
+  double farthest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double cells = std::ceil(size[axis] / grid.cell + extra_cells - 1e-6);
+    grid.blocks[axis] = int32_t(std::ceil(cells / block_cells));
+    grid.origin[axis] = bounds.center()[axis] - (0.5 * cells + shift[axis]) * grid.cell;
+    farthest = std::max({farthest, std::abs(bounds.lo[axis]), std::abs(bounds.hi[axis])});
+  }
+  // 16 roundings of the largest coordinate.
+  grid.single = 16 * 0x1p-24 * farthest < 1e-3 * grid.cell;
+  return grid;
+}
+
+// Pieces of surface that touch inside a cell stay apart: programs that merge equal points would
+// join them. Each vertex goes a little towards the middle of its own crossings.
+void separate(const Grid& grid, const Net& net, const CrossingPoints& crossings,
+              Vertices& vertices) {
+  const double apart = 1e-4 * grid.cell;
+  for (uint32_t v = 1; v < net.vertex_count(); ++v) {
+    for (uint32_t w = v; w > 0 && net.cell[w - 1] == net.cell[v]; --w) {
+      if (norm(vertices.at[v] - vertices.at[w - 1]) > apart) continue;
+      for (const uint32_t touching : {v, w - 1}) {
+        const uint32_t begin = net.first_use[touching], end = net.first_use[touching + 1];
+        Vec3 middle{};
+        for (uint32_t i = begin; i < end; ++i) middle = middle + crossings.at[net.uses[i] / 4];
+        middle = (1.0 / (end - begin)) * middle;
+        vertices.at[touching] = vertices.at[touching] + 2e-3 * (middle - vertices.at[touching]);
+      }
+    }
+  }
+}
+
+// Where the field has no gradient, the face's own normal must do.
+void fill_normals(Mesh& mesh) {
+  for (size_t f = 0; f < mesh.faces.size(); ++f) {
+    for (int k = 0; k < 4; ++k) {
+      Vec3& normal = mesh.corner_normals[4 * f + k];
+      if (dot(normal, normal) > 0.5) continue;
+      const auto& face = mesh.faces[f];
+      const Vec3 n = cross(mesh.vertices[face[2]] - mesh.vertices[face[0]],
+                           mesh.vertices[face[3]] - mesh.vertices[face[1]]);
+      normal = norm(n) > 0 ? normalized(n) : Vec3{0, 0, 1};
+    }
+  }
+}
+
+}  // namespace
+
+}  // namespace mesher
+
+Mesh make_mesh(const Evaluator& solid, const BoundingBox& bounds, const MeshOptions& options) {
+  using namespace mesher;
+  const Grid grid = make_grid(bounds, options);
+  const Field field(solid, bounds);
+  Work work(options.progress);
+  const size_t limit = options.memory_limit ? options.memory_limit : free_memory();
+  work.stage(0.4);
+  Cells cells = find_cells(field, grid, limit, work);
+  if (cells.at.empty()) {
+    throw Error("the solid has no surface within its bounds, or it is thinner than a cell (" +
+                short_number(grid.cell) + " scene units) everywhere");
+  }
+  work.stage(0.5);
+  Net net = build_net(cells, grid, work);
+  work.stage(0.7);
+  const CrossingPoints crossings = find_crossings(field, grid, cells.crossings, work);
+  cells = {};
+  work.stage(0.85);
+  Vertices vertices = place_vertices(field, grid, net, crossings, work);
+  Mesh mesh;
+  mesh.corner_normals.resize(4 * net.faces.size());
+  for (uint32_t use = 0; use < net.uses.size(); ++use) {
+    mesh.corner_normals[use] = vertices.normal[net.faces[use / 4][use % 4]];
+  }
+  work.stage(1);
+  place_features(field, grid, net, crossings, vertices, mesh.corner_normals, work);
+  separate(grid, net, crossings, vertices);
+  mesh.creases = find_creases(net, vertices, mesh.corner_normals);
+  mesh.vertices = std::move(vertices.at);
+  mesh.faces = std::move(net.faces);
+  fill_normals(mesh);
+  return mesh;
+}
+
+}  // namespace sardf

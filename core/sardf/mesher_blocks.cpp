@@ -1,0 +1,114 @@
+// Which blocks of cells can hold surface: an octree whose nodes are dropped where the field is
+// proven to keep its sign (after Barbier et al. 2025, "Lipschitz pruning").
+#include "sardf/mesher_blocks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sardf/error.hpp"
+#include "sardf/short_number.hpp"
+
+namespace sardf::mesher {
+
+namespace {
+
+// What a cell with surface takes in all stages together (measured), and how many there are at
+// least and at most in a node of n cells cubed that was not dropped, in units of n².
+constexpr double bytes_per_cell = 450;
+constexpr double fewest_cells = 0.1, most_cells = 0.8;
+
+// Where a field is this much steeper than a distance, intervals drop nodes that its values do not.
+constexpr double steep = 1.2;
+
+class Pruning {
+ public:
+  Pruning(const Field& field, const Grid& grid) : field_(field), grid_(grid) {
+    const int32_t most = std::max({grid.blocks[0], grid.blocks[1], grid.blocks[2]});
+    while ((int64_t(1) << levels_) < most) ++levels_;
+    const BoundingBox all = box({0, 0, 0}, levels_);
+    slope_ = field.lipschitz(all);
+    rounding_ = 1e-12 * std::max(norm(all.lo), norm(all.hi));
+  }
+
+  int levels() const { return levels_; }
+
+  // For each of up to Points::capacity nodes whether it can hold surface.
+  void test(const Index3* nodes, size_t n, int level, uint8_t* keep) const {
+    Points<double> centres;
+    for (size_t i = 0; i < n; ++i) centres.set(i, box(nodes[i], level).center());
+    field_.evaluate(centres, n);
+    const double radius = 0.5 * box({0, 0, 0}, level).diagonal();
+    const double reach = slope_ * (radius + rounding_) * (1 + 1e-12);
+    for (size_t i = 0; i < n; ++i) {
+      keep[i] = !(std::abs(centres.value[i]) > reach);
+      if (!keep[i] || slope_ < steep) continue;
+      const Interval range = field_.interval(box(nodes[i], level));
+      keep[i] = !(range.hi < 0 || range.lo > 0);
+    }
+  }
+
+  // The children of a node that lie in the grid, appended.
+  void split(const Index3& node, int level, std::vector<Index3>& to) const {
+    for (int child = 0; child < 8; ++child) {
+      Index3 at;
+      bool in_grid = true;
+      for (int axis = 0; axis < 3; ++axis) {
+        at[axis] = 2 * node[axis] + (child >> axis & 1);
+        in_grid = in_grid && (int64_t(at[axis]) << (level - 1)) < grid_.blocks[axis];
+      }
+      if (in_grid) to.push_back(at);
+    }
+  }
+
+ private:
+  BoundingBox box(const Index3& node, int level) const {
+    const double edge = std::ldexp(grid_.cell * block_cells, level);
+    BoundingBox result;
+    for (int axis = 0; axis < 3; ++axis) {
+      result.lo[axis] = grid_.origin[axis] + node[axis] * edge;
+      result.hi[axis] = result.lo[axis] + edge;
+    }
+    return result;
+  }
+
+  const Field& field_;
+  const Grid& grid_;
+  int levels_ = 0;
+  double slope_, rounding_;
+};
+
+void check_memory(size_t nodes, int level, const Grid& grid, size_t limit) {
+  const double edge = std::ldexp(double(block_cells), level);
+  const double cells = double(nodes) * edge * edge * (level > 0 ? fewest_cells : most_cells);
+  const double needed = bytes_per_cell * cells;
+  if (needed <= double(limit)) return;
+  const auto gib = [](double bytes) { return short_number(bytes / double(1 << 30)); };
+  throw Error("a mesh with cells of " + short_number(grid.cell) + " scene units needs " +
+              (level > 0 ? "more than " : "about ") + gib(needed) + " GiB of memory, " +
+              gib(double(limit)) + " GiB are free; cells of " +
+              short_number(grid.cell * 1.1 * std::sqrt(needed / double(limit))) + " fit");
+}
+
+}  // namespace
+
+std::vector<Index3> find_blocks(const Field& field, const Grid& grid, size_t memory_limit,
+                                Work& work) {
+  const Pruning pruning(field, grid);
+  std::vector<Index3> nodes{{0, 0, 0}};
+  for (int level = pruning.levels();; --level) {
+    std::vector<uint8_t> keep(nodes.size());
+    work.run(nodes.size(), 64, [&](size_t first, size_t last) {
+      pruning.test(&nodes[first], last - first, level, &keep[first]);
+    });
+    std::vector<Index3> kept;
+    for (size_t i = 0; i < nodes.size(); ++i) {
+      if (keep[i]) kept.push_back(nodes[i]);
+    }
+    check_memory(kept.size(), level, grid, memory_limit);
+    if (level == 0) return kept;
+    nodes.clear();
+    for (const Index3& node : kept) pruning.split(node, level, nodes);
+  }
+}
+
+}  // namespace sardf::mesher

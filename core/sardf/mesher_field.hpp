@@ -1,0 +1,48 @@
+// The field that is meshed: the solid's, clipped by the bounds. Private to core/sardf/mesher*.cpp.
+#pragma once
+
+#include "sardf/evaluate.hpp"
+
+namespace sardf::mesher {
+
+/// Coordinates, values and derivatives of up to `capacity` points as arrays.
+template <class T>
+struct Points {
+  static constexpr size_t capacity = Evaluator::block_size;
+  T xyz[3][capacity], value[capacity], gradient[3][capacity];
+  void set(size_t i, const Vec3& p) {
+    for (int axis = 0; axis < 3; ++axis) xyz[axis][i] = T(p[axis]);
+  }
+  Vec3 gradient_at(size_t i) const {
+    return {double(gradient[0][i]), double(gradient[1][i]), double(gradient[2][i])};
+  }
+};
+
+class Field {
+ public:
+  Field(const Evaluator& solid, const BoundingBox& bounds) : solid_(solid), bounds_(bounds) {}
+
+  /// Values of the first n points. NaN counts as outside everywhere.
+  template <class T>
+  void evaluate(Points<T>& points, size_t n) const;
+  /// Values and gradients of the first n points.
+  template <class T>
+  void differentiate(Points<T>& points, size_t n) const;
+
+  /// Encloses the values over the box.
+  Interval interval(const BoundingBox& box) const;
+  /// Bounds the length of the gradient over the box; may be infinite.
+  double lipschitz(const BoundingBox& box) const;
+
+ private:
+  const Evaluator& solid_;
+  BoundingBox bounds_;
+};
+
+/// The unit outward normal for a gradient; 0 where the gradient is 0 or not finite.
+Vec3 outward_normal(const Vec3& gradient);
+
+/// From a point to the surface by one step of Newton's method; 0 where there is no gradient.
+Vec3 newton_step(double value, const Vec3& gradient);
+
+}  // namespace sardf::mesher

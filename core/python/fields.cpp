@@ -1,5 +1,7 @@
 #include "sardf/field.hpp"
 
+#include <cstring>
+
 #include "convert.hpp"
 #include "sardf/certify.hpp"
 #include "sardf/error.hpp"
@@ -7,6 +9,15 @@
 namespace sardf {
 
 namespace {
+
+py::array as_array(const py::object& points) {
+  const py::array array = py::array::ensure(points);
+  if (!array || !std::strchr("fiub", array.dtype().kind())) {
+    PyErr_Clear();
+    throw Error("points are no array of numbers; (N, 3) or (3,) is accepted");
+  }
+  return array;
+}
 
 // (N, 3) points, or one point of shape (3,).
 template <class T>
@@ -118,15 +129,17 @@ void bind_fields(py::module_& m) {
   field
       .def(
           "__call__",
-          [](const Field& f, const py::array& points) {
-            return is_float32(points) ? values<float>(f, points) : values<double>(f, points);
+          [](const Field& f, const py::object& points) {
+            const py::array at = as_array(points);
+            return is_float32(at) ? values<float>(f, at) : values<double>(f, at);
           },
           py::arg("points"),
           "Values at points (N, 3): float64 on the exact path, float32 on the SIMD path. (N,)")
       .def(
           "gradient",
-          [](const Field& f, const py::array& points) {
-            return is_float32(points) ? gradients<float>(f, points) : gradients<double>(f, points);
+          [](const Field& f, const py::object& points) {
+            const py::array at = as_array(points);
+            return is_float32(at) ? gradients<float>(f, at) : gradients<double>(f, at);
           },
           py::arg("points"),
           "Gradients at points (N, 3). At a kink one branch's; NaN where no direction exists.")

@@ -1,4 +1,5 @@
 #include "convert.hpp"
+#include "sardf/error.hpp"
 #include "sardf/mesh.hpp"
 
 namespace sardf {

@@ -58,8 +58,7 @@ py::dict attributes(const Scene& scene) {
 }
 
 py::object camera(const Scene& scene, int width, int height) {
-  return py::module_::import("json").attr("loads")(
-      camera_text(scene_camera(scene, width, height)));
+  return py::module_::import("json").attr("loads")(camera_text(scene_camera(scene, width, height)));
 }
 
 Mesh mesh(const Scene& scene, int resolution, double cell_size, bool sections, int size, int gutter,

@@ -1,0 +1,286 @@
+#include "sardf/fraction_rules.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sardf/arithmetic.hpp"
+#include "sardf/error.hpp"
+
+namespace sardf {
+
+namespace {
+
+std::string number_text(double a) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", a);
+  return text;
+}
+
+size_t place_of(const std::string& material, const std::vector<std::string>& materials) {
+  const auto found = std::find(materials.begin(), materials.end(), material);
+  if (found == materials.end()) {
+    throw Error("there is no material '" + material + "'" + did_you_mean(material, materials));
+  }
+  return size_t(found - materials.begin());
+}
+
+Expression sum(const std::vector<Expression>& terms) {
+  Expression total = constant(0);
+  for (const Expression& term : terms) total = total + term;
+  return total;
+}
+
+Expression clamp01(const Expression& a) { return function("clamp", {a, constant(0), constant(1)}); }
+
+// An influence must be positive; float still takes the logarithm of this.
+constexpr double least_influence = 1e-30;
+// Keeps differences of exponents free of inf - inf.
+constexpr double largest_exponent = 1e30;
+
+bool is_call_of(const Expression& e, const char* name) {
+  return e->type == Node::Type::operation && e->operation->info().name == name;
+}
+
+// ln e without computing an exponential that could overflow: ln exp(a) = a, also as a factor.
+Expression logarithm(const Expression& e) {
+  const auto plain = [](const Expression& a) { return log(max(a, constant(least_influence))); };
+  if (is_constant(e)) return plain(e);
+  if (is_call_of(e, "exp")) return e->inputs[0];
+  const bool product = is_call_of(e, "multiply");
+  if (product && is_call_of(e->inputs[0], "exp")) {
+    return e->inputs[0]->inputs[0] + plain(e->inputs[1]);
+  }
+  if (product && is_call_of(e->inputs[1], "exp")) {
+    return plain(e->inputs[0]) + e->inputs[1]->inputs[0];
+  }
+  if (is_call_of(e, "divide") && is_call_of(e->inputs[1], "exp")) {
+    return plain(e->inputs[0]) - e->inputs[1]->inputs[0];
+  }
+  return plain(e);
+}
+
+// exp(a_i - max a) / Σ.
+std::vector<Expression> normalized_exponentials(const std::vector<Expression>& a) {
+  Expression largest = a[0];
+  for (const Expression& e : a) largest = max(largest, e);
+  std::vector<Expression> shares;
+  for (const Expression& e : a) shares.push_back(exp(e - largest));
+  const Expression total = sum(shares);
+  for (Expression& share : shares) share = share / total;
+  return shares;
+}
+
+}  // namespace
+
+void ConstantFractions::check() const {
+  double total = 0;
+  for (const auto& [material, share] : shares) {
+    if (!(share >= 0 && share <= 1 + 1e-6)) {
+      throw Error("the share of '" + material + "' is " + number_text(share) +
+                  "; a number from 0 to 1 is accepted");
+    }
+    total += share;
+  }
+  if (std::abs(total - 1) > 1e-6) {
+    throw Error("the shares sum to " + number_text(total) + "; they must sum to 1");
+  }
+}
+
+std::vector<Expression> ConstantFractions::values(const Lowering& lowering) const {
+  double total = 0;
+  for (const auto& [material, share] : shares) total += share;
+  std::vector<Expression> out(lowering.materials.size(), constant(0));
+  for (const auto& [material, share] : shares) {
+    out[place_of(material, lowering.materials)] = constant(share / total);
+  }
+  return out;
+}
+
+std::vector<Expression> Formulas::values(const Lowering& lowering) const {
+  std::vector<Expression> out(lowering.materials.size(), constant(0));
+  std::vector<Expression> shares;
+  for (const auto& [material, field] : functions) {
+    // The field stands first: max(NaN, 0) is 0.
+    shares.push_back(max(field.expression(), constant(0)));
+  }
+  // Where the sum is 0 so are all fractions, which whoever samples them reports.
+  const Expression total = max(sum(shares), constant(1e-30));
+  for (size_t i = 0; i < functions.size(); ++i) {
+    Expression& to = out[place_of(functions[i].first, lowering.materials)];
+    to = to + shares[i] / total;
+  }
+  return out;
+}
+
+std::vector<Expression> AttributeValue::values(const Lowering& lowering) const {
+  if (components.size() != lowering.components) {
+    throw Error("the value has " + std::to_string(components.size()) + " components where " +
+                std::to_string(lowering.components) + " are needed");
+  }
+  std::vector<Expression> out;
+  for (const Field& f : components) out.push_back(f.expression());
+  return out;
+}
+
+std::vector<Expression> OfMaterials::values(const Lowering& lowering) const {
+  if (lowering.components != 1) throw Error("of_materials gives one component only");
+  Expression total = constant(0);
+  for (const auto& [material, field] : functions) {
+    const size_t place = place_of(material, lowering.materials);
+    total = total + lowering.fractions.at(place) * field.expression();
+  }
+  return {total};
+}
+
+std::vector<WeightedPart> InverseDistance::parts(double diagonal) const {
+  if (features.size() == 1) return {{constant(1), features[0].fractions}};
+  const Expression least = constant(on_feature * diagonal);
+  std::vector<Expression> exponents, on;
+  for (const Feature& feature : features) {
+    const Expression u = feature_distance(feature.at.field), factor = constant(-feature.exponent);
+    Expression a = factor * log(max(least, u));
+    if (feature.influence.field) {
+      a = function("clamp", {a + factor * logarithm(feature.influence.field.expression()),
+                             constant(-largest_exponent), constant(largest_exponent)});
+    }
+    exponents.push_back(a);
+    on.push_back(less_equal(u, least));
+  }
+  const std::vector<Expression> away = normalized_exponentials(exponents);
+  const Expression touched = sum(on), shared = max(touched, constant(1));
+  std::vector<WeightedPart> all;
+  for (size_t i = 0; i < features.size(); ++i) {
+    all.push_back({select(touched, on[i] / shared, away[i]), features[i].fractions});
+  }
+  return all;
+}
+
+void BlendBetween::check() const {
+  if (of.size() != 2) {
+    throw Error("of has " + std::to_string(of.size()) + " elements; exactly 2 are accepted");
+  }
+}
+
+std::vector<WeightedPart> BlendBetween::parts(double diagonal) const {
+  const Expression d0 = feature_distance(of[0].at.field), d1 = feature_distance(of[1].at.field);
+  const Expression least = constant(on_feature * diagonal), both = d0 + d1;
+  const Expression share = clamp01(d1 / max(both, least));
+  const Expression first = select(less_equal(both, least), constant(0.5), share);
+  return {{first, of[0].fractions}, {constant(1) - first, of[1].fractions}};
+}
+
+void Ramp::check() const {
+  for (size_t i = 1; i < stops.size(); ++i) {
+    if (stops[i].at < stops[i - 1].at) {
+      throw Error("stop " + std::to_string(i + 1) + " is at " + number_text(stops[i].at) +
+                  ", before the one at " + number_text(stops[i - 1].at) +
+                  "; stops must be in rising order");
+    }
+  }
+}
+
+std::vector<WeightedPart> Ramp::parts(double) const {
+  const Expression& t = field.expression();
+  std::vector<WeightedPart> all;
+  Expression reached = constant(1);  // 0 before a stop's predecessor, 1 from the stop on
+  for (size_t i = 0; i < stops.size(); ++i) {
+    Expression next = constant(0);
+    if (i + 1 < stops.size()) {
+      const double from = stops[i].at, to = stops[i + 1].at;
+      next = from == to ? less_equal(constant(to), t)
+                        : clamp01((t - constant(from)) / constant(to - from));
+    }
+    // The difference may round below 0 in float.
+    all.push_back({max(constant(0), reached - next), stops[i].fractions});
+    reached = next;
+  }
+  return all;
+}
+
+void Bands::check() const {
+  for (const Band& band : bands) {
+    if (blend_width > band.width) {
+      throw Error("blend_width is " + number_text(blend_width) +
+                  ", more than the width of a stripe, " + number_text(band.width));
+    }
+  }
+}
+
+std::vector<WeightedPart> Bands::parts(double) const {
+  double period = 0;
+  for (const Band& band : bands) period += band.width;
+  const Expression along =
+      function("mod", {field.expression() - constant(start), constant(period)});
+  // 1 where the border at `value` has been passed.
+  const auto passed = [&](double value) {
+    if (blend_width == 0) return less_equal(constant(value), along);
+    return clamp01((along - constant(value)) / constant(blend_width) + constant(0.5));
+  };
+  const bool sharp = blend_width == 0;
+  const Expression begun = sharp ? constant(1) : passed(0);
+  Expression before = begun;
+  double border = 0;
+  std::vector<WeightedPart> all;
+  for (size_t i = 0; i < bands.size(); ++i) {
+    border += bands[i].width;
+    const bool last = i + 1 == bands.size();
+    const Expression after = last && sharp ? constant(0) : passed(border);
+    all.push_back({max(constant(0), before - after), bands[i].fractions});
+    before = after;
+  }
+  if (sharp) return all;
+  // The border between the last stripe and the first lies at both ends of the period.
+  all.back().weight = all.back().weight + (constant(1) - begun);
+  all.front().weight = all.front().weight + before;
+  return all;
+}
+
+namespace {
+
+// The place of the largest of the fields, the first of equals.
+Expression place_of_largest(const std::vector<Partition::Part>& of) {
+  Expression largest = of[0].solid.expression(), place = constant(0);
+  for (size_t i = 1; i < of.size(); ++i) {
+    const Expression& f = of[i].solid.expression();
+    place = select(less(largest, f), constant(double(i)), place);
+    largest = max(largest, f);
+  }
+  return place;
+}
+
+}  // namespace
+
+std::vector<WeightedPart> Partition::parts(double diagonal) const {
+  const Expression tolerance = constant(in_region * diagonal);
+  Expression nearest = place_of_largest(of);
+  std::vector<WeightedPart> all;
+  if (blend_width == 0) {
+    for (size_t i = of.size(); i-- > 0;) {
+      const Expression in = less_equal(-tolerance, of[i].solid.expression());
+      nearest = select(in, constant(double(i)), nearest);
+    }
+    for (size_t i = 0; i < of.size(); ++i) {
+      all.push_back({function("equal", {nearest, constant(double(i))}), of[i].fractions});
+    }
+    return all;
+  }
+  // A part counts fully inside and fades outside of it, so that nothing depends on the distance
+  // to an outer face that parts share. What is left over goes to all in proportion.
+  Expression left = constant(1);
+  std::vector<Expression> weights;
+  for (const Part& part : of) {
+    const Expression in =
+        clamp01(constant(1) + (part.solid.expression() + tolerance) / constant(blend_width));
+    weights.push_back(left * in);
+    left = left * (constant(1) - in);
+  }
+  const Expression total = sum(weights);
+  for (size_t i = 0; i < of.size(); ++i) {
+    const Expression alone = function("equal", {nearest, constant(double(i))});
+    const Expression share = weights[i] / max(total, constant(1e-30));
+    all.push_back({select(less(constant(1e-30), total), share, alone), of[i].fractions});
+  }
+  return all;
+}
+
+}  // namespace sardf

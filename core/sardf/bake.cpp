@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <mutex>
-#include <numeric>
 #include <optional>
 
 #include "sardf/bake_stages.hpp"
@@ -38,12 +38,14 @@ double diagonal(const Mesh& mesh) {
 /// Some channels of a bake: one evaluator for all their components, and their images.
 class Group {
  public:
-  Group(std::span<const BakeChannel> channels, int size) : channels_(channels) {
+  /// `report` throws to cancel.
+  Group(std::span<const BakeChannel> channels, int size, const std::function<void()>& report)
+      : channels_(channels) {
     std::vector<Expression> outputs;
     for (const BakeChannel& channel : channels) {
       const int components = static_cast<int>(channel.components.size());
       images.push_back({size, size, components, {}});
-      images.back().samples.resize(size_t(size) * size * components);
+      clear(images.back(), report);
       outputs.insert(outputs.end(), channel.components.begin(), channel.components.end());
     }
     evaluator_ = Evaluator(outputs);
@@ -97,6 +99,16 @@ class Group {
           out[row][i] = 0;
         }
       undefined[channel] += lost;
+    }
+  }
+
+  /// Makes all samples 0, step by step: a large image takes more than a tenth of a second.
+  static void clear(Image& image, const std::function<void()>& report) {
+    const size_t row = size_t(image.width) * image.channels, all = row * image.height;
+    image.samples.reserve(all);
+    while (image.samples.size() < all) {
+      report();
+      image.samples.resize(std::min(all, image.samples.size() + 256 * row));
     }
   }
 
@@ -179,9 +191,12 @@ BakeReport bake(const TexelMap& texels, const Expression& solid,
   BakeReport report;
   for (size_t first = 0; first < channels.size();) {
     const size_t n = count_within(channels.subspan(first), texels.size(), memory);
-    Group group(channels.subspan(first, n), texels.size());
-    const double all = double(channels.size());
-    baker.run(group, progress, double(first) / all, double(first + n) / all);
+    const double from = double(first) / double(channels.size());
+    const double to = double(first + n) / double(channels.size());
+    Group group(channels.subspan(first, n), texels.size(), [&] {
+      if (progress && !progress(from)) throw Cancelled();
+    });
+    baker.run(group, progress, from, to);
     if (first == 0) {
       report.covered = size_t(std::count(baker.covered.begin(), baker.covered.end(), 1));
       if (report.covered == 0)
@@ -201,6 +216,7 @@ std::vector<Image> bake_images(const TexelMap& texels, const Expression& solid,
                                std::span<const BakeChannel> channels, const Progress& progress) {
   std::vector<Image> images;
   const auto take = [&](size_t, Image&& image, const std::vector<unsigned char>& covered) {
+    if (progress && !progress(1)) throw Cancelled();
     images.push_back(std::move(image));
     fill_with_mean(images.back(), covered);
   };
@@ -209,19 +225,35 @@ std::vector<Image> bake_images(const TexelMap& texels, const Expression& solid,
 }
 
 void fill_with_mean(Image& image, const std::vector<unsigned char>& covered) {
-  std::vector<double> mean(size_t(image.channels), 0);
+  const size_t channels = size_t(image.channels), width = size_t(image.width);
+  struct RowSum {
+    std::vector<double> sum;
+    size_t count = 0;
+  };
+  // By rows, so that the order of summation does not depend on the number of threads.
+  std::vector<RowSum> rows(size_t(image.height));
+  tbb::parallel_for(size_t(0), rows.size(), [&](size_t y) {
+    rows[y].sum.assign(channels, 0);
+    for (size_t i = y * width; i < (y + 1) * width; ++i) {
+      if (!covered[i]) continue;
+      ++rows[y].count;
+      for (size_t c = 0; c < channels; ++c) rows[y].sum[c] += image.samples[i * channels + c];
+    }
+  });
+  std::vector<double> mean(channels, 0);
   size_t count = 0;
-  for (size_t i = 0; i < covered.size(); ++i) {
-    if (!covered[i]) continue;
-    ++count;
-    for (size_t c = 0; c < mean.size(); ++c) mean[c] += image.samples[i * mean.size() + c];
+  for (const RowSum& row : rows) {
+    count += row.count;
+    for (size_t c = 0; c < channels; ++c) mean[c] += row.sum[c];
   }
   if (count == 0) throw Error("no texel of the texture is covered, so there is no mean");
   for (double& sum : mean) sum /= double(count);
-  for (size_t i = 0; i < covered.size(); ++i)
-    if (!covered[i])
-      for (size_t c = 0; c < mean.size(); ++c)
-        image.samples[i * mean.size() + c] = static_cast<float>(mean[c]);
+  tbb::parallel_for(size_t(0), rows.size(), [&](size_t y) {
+    for (size_t i = y * width; i < (y + 1) * width; ++i)
+      if (!covered[i])
+        for (size_t c = 0; c < channels; ++c)
+          image.samples[i * channels + c] = static_cast<float>(mean[c]);
+  });
 }
 
 }  // namespace sardf

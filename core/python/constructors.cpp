@@ -39,6 +39,15 @@ void bind_constructor(py::module_& m, const Constructor& constructor) {
       py::name(constructor.name.c_str()), py::doc(doc.c_str()), py::scope(m));
 }
 
+// For the stub: the position of *fields or -1, and (name, type, required) of each parameter.
+py::tuple signature_data(const std::vector<ParameterInfo>& parameters, int variadic) {
+  py::list rows;
+  for (const ParameterInfo& p : parameters) {
+    rows.append(py::make_tuple(p.name, type_name(p.type), p.required));
+  }
+  return py::make_tuple(variadic, rows);
+}
+
 Field formula(const std::string& text, const py::kwargs& names) {
   std::map<std::string, Field> fields;
   for (const auto& [name, value] : names) {
@@ -50,10 +59,12 @@ Field formula(const std::string& text, const py::kwargs& names) {
 }  // namespace
 
 void bind_constructors(py::module_& m) {
-  py::dict constructor_dict, blend_dict;
+  py::dict constructor_dict, blend_dict, signatures;
   for (const Constructor& constructor : constructors()) {
     bind_constructor(m, constructor);
     constructor_dict[constructor.name.c_str()] = constructor.group;
+    signatures[constructor.name.c_str()] =
+        signature_data(constructor.parameters, constructor.variadic());
   }
   for (const BlendType& type : blend_types()) {
     const std::string name = camel_case(type.name);
@@ -65,10 +76,12 @@ void bind_constructors(py::module_& m) {
         },
         py::name(name.c_str()), py::doc(doc.c_str()), py::scope(m));
     blend_dict[type.name.c_str()] = name;
+    signatures[name.c_str()] = signature_data(type.parameters, -1);
   }
   // What the package exports and the stub generator loops over.
   m.attr("_constructors") = constructor_dict;
   m.attr("_blends") = blend_dict;
+  m.attr("_signatures") = signatures;
   m.def("formula", &formula, py::arg("text"),
         "formula(text, **names)\n\nA field from a formula over x, y, z, pi and the given fields or "
         "numbers, e.g. formula(\"sin(k*x) + part\", k=2, part=box).");

@@ -15,8 +15,14 @@ std::string shown(const py::handle& value) {
   return text.size() > 60 ? text.substr(0, 57) + "..." : text;
 }
 
+// "a number is accepted", "3 numbers are accepted".
+std::string accepted(ParameterType type) {
+  const std::string name = type_name(type);
+  return name + (std::isdigit(name[0]) ? " are accepted" : " is accepted");
+}
+
 [[noreturn]] void wrong_type(const ParameterInfo& p, const py::handle& value) {
-  throw Error(p.name + " is " + shown(value) + "; " + type_name(p.type) + " is accepted");
+  throw Error(p.name + " is " + shown(value) + "; " + accepted(p.type));
 }
 
 bool is_number(const py::handle& value) {
@@ -190,8 +196,7 @@ std::vector<Value> arguments_from(const std::string& takes,
   for (size_t i = 0; i < parameters.size(); ++i) {
     if (given[i]) continue;
     if (parameters[i].required) {
-      throw Error(takes + ": " + names[i] + " is missing; " + type_name(parameters[i].type) +
-                  " is accepted");
+      throw Error(takes + ": " + names[i] + " is missing; " + accepted(parameters[i].type));
     }
     values[i] = parameters[i].type == ParameterType::blend ? Value(current_blend())
                                                            : parameters[i].default_value;

@@ -20,7 +20,9 @@ class blend:
             raise _core.Error(f"blend takes one keyword of {', '.join(_core._blends)}")
         name, value = next(iter(chosen.items()))
         if name not in _core._blends:
-            raise _core.Error(f"there is no blend '{name}'; accepted are {', '.join(_core._blends)}")
+            raise _core.Error(
+                f"there is no blend '{name}'; accepted are {', '.join(_core._blends)}"
+            )
         make = getattr(_core, _core._blends[name])
         self._blend = make() if value is True else make(value)
 

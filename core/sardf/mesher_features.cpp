@@ -21,8 +21,8 @@ constexpr double same_side = 0.9659;
 // Directions in which the normals tell less than this, relative to the best, are left alone: the
 // sides of an edge make 2 atan(sqrt(0.03)) = 20 degrees.
 constexpr double least_weight = 0.03;
-// Accepted distance from the surface, in cells.
-constexpr double tolerance = 1e-3;
+// Distances from the surface, in cells: wanted, and accepted when it comes no nearer.
+constexpr double wanted_distance = 1e-6, accepted_distance = 1e-3;
 
 struct Sample {
   Vec3 at;
@@ -175,18 +175,20 @@ class Features {
     Points<double> points;
     for (size_t k = 0; k < batch.count; ++k) {
       const uint32_t v = batch.vertices[k];
-      Vec3& at = vertices_.at[v];
-      bool found = false;
-      for (int step = 0; step < 12 && !found; ++step) {
+      const double one_cell = grid_.cell * steepness(batch, k);
+      Vec3 at = vertices_.at[v];
+      double nearest = infinity;
+      for (int step = 0; step < 12 && !(nearest <= wanted_distance * one_cell); ++step) {
         points.set(0, at);
         field_.differentiate(points, 1);
-        const double allowed = tolerance * grid_.cell * steepness(batch, k);
-        found = std::abs(points.value[0]) <= allowed;
-        if (!found) {
-          at = clamped(at + newton_step(points.value[0], points.gradient_at(0)), net_.room[v]);
+        const double value = points.value[0];
+        if (std::abs(value) < nearest) {
+          nearest = std::abs(value);
+          vertices_.at[v] = at;
         }
+        at = clamped(at + newton_step(value, points.gradient_at(0)), net_.room[v]);
       }
-      if (!found) at = nearest_crossing(v);
+      if (!(nearest <= accepted_distance * one_cell)) vertices_.at[v] = nearest_crossing(v);
     }
   }
 

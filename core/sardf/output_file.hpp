@@ -1,0 +1,32 @@
+// A file that appears under its name only when it is complete.
+#pragma once
+
+#include <fstream>
+#include <string>
+
+namespace sardf {
+
+/// Writes to a temporary file in the folder of `path`; commit() renames it, and without commit()
+/// it is removed. Throws Error that names the path and the reason.
+class OutputFile {
+ public:
+  explicit OutputFile(std::string path);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  std::ostream& stream() { return stream_; }
+  void write(const std::string& bytes) {
+    stream_.write(bytes.data(), std::streamsize(bytes.size()));
+  }
+  void commit();
+
+ private:
+  [[noreturn]] void fail(int reason);
+
+  std::string path_, temporary_;
+  std::ofstream stream_;
+  bool committed_ = false;
+};
+
+}  // namespace sardf

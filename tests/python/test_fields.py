@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 import sardf
 
 POINTS = np.random.default_rng(7).uniform(-6, 6, (500, 3))
@@ -51,7 +50,8 @@ def test_interval_and_lipschitz_enclose():
     inside = POINTS[np.all((POINTS >= (-2, -2, -1)) & (POINTS <= (1, 2, 1)), axis=1)]
     values = part(inside)
     assert len(inside) > 5
-    assert low <= values.min() and values.max() <= high
+    assert low <= values.min()
+    assert values.max() <= high
     assert 1 <= part.lipschitz((-2, -2, -1), (1, 2, 1)) < 1.001
 
 

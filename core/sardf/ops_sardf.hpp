@@ -18,6 +18,13 @@ inline bool can_reach_outer_corner(Interval x, Interval y, double radius) {
   return band && x.lo < 0 && y.lo < 0 && x.hi > -3 * radius && y.hi > -3 * radius;
 }
 
+/// Whether (lo, hi) is so near the edge that lo differs from the blend by less than rounding; there
+/// squares would vanish.
+template <class T>
+auto is_edge(const T& lo, const T& hi, double radius) {
+  return lo > T(-1e-15 * radius) && hi < T(1e-15 * radius);
+}
+
 /// sardf: r(d) = min(d, R) inside, min(-d/2, R) outside (2.2). Not C1 across d = R and d = -2R.
 struct Sardf {
   static constexpr const char *name = "sardf",
@@ -38,8 +45,10 @@ struct Sardf {
   template <class T>
   T intersection(T x, T y) const {
     const T lo = smaller(x, y), hi = larger(x, y), t = hi - lo, R(radius);
-    return shortcut(t >= R || (lo <= T(0.0) && hi >= T(0.0)), lo,
-                    [&] { return max(growing_arc(lo, hi, t), fixed_arc(lo, t)); });
+    return shortcut(t >= R || (lo <= T(0.0) && hi >= T(0.0)), lo, [&] {
+      const T arc = max(growing_arc(lo, hi, t), fixed_arc(lo, t));
+      return select(is_edge(lo, hi, radius), lo, arc);
+    });
   }
 
  private:
@@ -86,7 +95,7 @@ struct SardfC1 {
       const T growing = select(inside, shortcut(!inside, lo, [&] { return inner(lo, hi); }),
                                shortcut(inside, lo, [&] { return outer(lo, hi, t); }));
       const auto is_fixed = select(inside, fixed, -T(0.5) * fixed) >= R;
-      return select(is_fixed, fixed, growing);
+      return select(is_fixed, fixed, select(is_edge(lo, hi, radius), lo, growing));
     });
   }
 

@@ -1,0 +1,95 @@
+#include <gtest/gtest.h>
+
+#include "laws.hpp"
+
+namespace sardf::laws {
+
+namespace {
+
+bool takes_fields(const Constructor& constructor) {
+  for (const ParameterInfo& p : constructor.parameters) {
+    if (p.type == ParameterType::field || p.type == ParameterType::fields) return true;
+  }
+  return false;
+}
+
+BlendPointer random_blend(Random& r) {
+  const BlendType& type = blend_types()[size_t(r.below(int(blend_types().size())))];
+  std::vector<Value> arguments;
+  for (size_t i = 0; i < type.parameters.size(); ++i) arguments.push_back(r.decades(-1, 0.5));
+  return make_blend(type.name, arguments);
+}
+
+template <class T>
+Value random_of(Random& r, const Parameter& p) {
+  T value{};
+  randomize(r, p, value);
+  return value;
+}
+
+Value random_value(Random& r, const ParameterInfo& info, int depth) {
+  const Parameter p{"", "", info.unit, info.range, info.required, info.at_least};
+  switch (info.type) {
+    case ParameterType::boolean:
+      return r.chance(0.5);
+    case ParameterType::number:
+      return r.number(p);
+    case ParameterType::optional_number:
+      return r.chance(0.5) ? Value() : Value(r.number(p));
+    case ParameterType::vector2:
+      return random_of<Vec2>(r, p);
+    case ParameterType::optional_vector3:
+      if (r.chance(0.5)) return {};
+      [[fallthrough]];
+    case ParameterType::vector3:
+      return random_of<Vec3>(r, p);
+    case ParameterType::optional_vector4:
+      return r.chance(0.5) ? Value() : random_of<std::array<double, 4>>(r, p);
+    case ParameterType::axis:
+      return r.direction();
+    case ParameterType::points2:
+      return random_of<std::vector<Vec2>>(r, p);
+    case ParameterType::points3:
+      return random_of<std::vector<Vec3>>(r, p);
+    case ParameterType::field:
+      return random_field(r, depth - 1);
+    case ParameterType::fields: {
+      std::vector<Field> fields;
+      for (int n = 1 + r.below(3); n > 0; --n) fields.push_back(random_field(r, depth - 1));
+      return fields;
+    }
+    case ParameterType::blend:
+      return random_blend(r);
+    default:
+      return info.default_value;
+  }
+}
+
+}  // namespace
+
+bool can_be_random(const Constructor& constructor) {
+  for (const ParameterInfo& p : constructor.parameters) {
+    if (p.required && p.type == ParameterType::text) return false;
+  }
+  return true;
+}
+
+Field random_field(Random& r, const Constructor& constructor, int depth) {
+  return retried([&] {
+    std::vector<Value> arguments;
+    for (const ParameterInfo& p : constructor.parameters) {
+      arguments.push_back(random_value(r, p, depth));
+    }
+    return make_field(constructor, arguments);
+  });
+}
+
+Field random_field(Random& r, int depth) {
+  for (;;) {
+    const Constructor& constructor = constructors()[size_t(r.below(int(constructors().size())))];
+    if (!can_be_random(constructor) || takes_fields(constructor) != (depth > 0)) continue;
+    return random_field(r, constructor, depth);
+  }
+}
+
+}  // namespace sardf::laws

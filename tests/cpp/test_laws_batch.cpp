@@ -1,0 +1,205 @@
+// Laws of every operation: bulk kernels agree with the scalar double, and with one another.
+#include <gtest/gtest.h>
+
+#include <bit>
+
+#include "laws.hpp"
+
+namespace sardf {
+namespace {
+
+using laws::Random;
+
+constexpr size_t points = 64;
+/// Allowed float error, relative to the largest argument, parameter or result.
+constexpr double float_tolerance = 2e-6;
+/// Squares of floats below this are 0.
+constexpr double vanishing = 2e-19;
+
+std::vector<InstructionSet> instruction_sets() {
+  std::vector<InstructionSet> sets;
+  for (const auto set : {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512}) {
+    if (set <= instruction_set()) sets.push_back(set);
+  }
+  return sets;
+}
+
+struct Batch {
+  explicit Batch(int arity) : inputs(size_t(arity), std::vector<float>(points)) {}
+  Batch(Random& r, int arity) : Batch(arity) {
+    for (size_t i = 0; i < points; ++i) {
+      const std::vector<double> at = r.values(arity, 0.1, 1e12);
+      for (size_t k = 0; k < at.size(); ++k) inputs[k][i] = float(at[k]);
+    }
+  }
+  std::array<const float*, max_arity> pointers() const {
+    std::array<const float*, max_arity> at{};
+    for (size_t k = 0; k < inputs.size(); ++k) at[k] = inputs[k].data();
+    return at;
+  }
+  std::vector<double> at(size_t i) const {
+    std::vector<double> values;
+    for (const std::vector<float>& input : inputs) values.push_back(input[i]);
+    return values;
+  }
+  std::vector<std::vector<float>> inputs;
+};
+
+struct Result {
+  std::vector<float> value = std::vector<float>(points);
+  std::vector<std::vector<float>> partial;
+};
+
+Result run(const Operation& op, const Kernels& kernels, const Batch& batch) {
+  Result result;
+  result.partial.assign(batch.inputs.size(), std::vector<float>(points));
+  std::array<float*, max_arity> partial{};
+  for (size_t k = 0; k < result.partial.size(); ++k) partial[k] = result.partial[k].data();
+  std::vector<float> again(points);
+  kernels.partials(op.object(), batch.pointers().data(), again.data(), partial.data(), points);
+  kernels.value(op.object(), batch.pointers().data(), result.value.data(), points);
+  for (size_t i = 0; i < points; ++i) {
+    // The value that comes with the partials is the value.
+    EXPECT_TRUE(std::isnan(again[i]) || again[i] == result.value[i]);
+  }
+  return result;
+}
+
+// What the result can be where the arguments are right within float rounding. It judges functions
+// that amplify rounding (a sum that cancels, floor, a quotient) and comparisons.
+Interval around(const Operation& op, const std::vector<double>& in, double most) {
+  std::array<Interval, max_arity> near;
+  for (size_t k = 0; k < in.size(); ++k) {
+    const double slack = 4 * 0x1p-24 * most;
+    near[k] = {in[k] - slack, in[k] + slack};
+  }
+  return op.interval(near.data());
+}
+
+void expect_near_scalar(const Operation& op, const std::vector<double>& in, float result) {
+  const double expected = op.evaluate(in.data());
+  // Beyond the range of float squares overflow.
+  if (std::isnan(expected) || std::abs(expected) > 1e30) return;
+  const double most = laws::magnitude(op, in, expected);
+  const double slack = float_tolerance * most + vanishing;
+  if (std::abs(result - expected) <= slack) return;
+  const bool is_function = op.info().kind == Kind::function || op.info().name == "integer_power";
+  const Interval near = is_function ? around(op, in, most) : Interval(expected);
+  EXPECT_TRUE(near.lo - slack <= result && result <= near.hi + slack)
+      << "float " << result << ", double " << expected << " at " << testing::PrintToString(in)
+      << ", parameters " << testing::PrintToString(op.numbers());
+}
+
+TEST(BatchLaws, KernelsEqualScalars) {
+  laws::for_operations(laws::effort(60), [](auto, const Operation& op, Random& r) {
+    const Batch batch(r, op.info().arity);
+    const Result result = run(op, op.kernels(), batch);
+    for (size_t i = 0; i < points; ++i) expect_near_scalar(op, batch.at(i), result.value[i]);
+  });
+}
+
+bool same(float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+
+TEST(BatchLaws, InstructionSetsAgreeExactly) {
+  laws::for_operations(laws::effort(60), [](auto, const Operation& op, Random& r) {
+    const Batch batch(r, op.info().arity);
+    const Kernels* baseline = listed_kernels(InstructionSet::baseline, op.info().name);
+    ASSERT_NE(baseline, nullptr);
+    const Result expected = run(op, *baseline, batch);
+    for (const InstructionSet set : instruction_sets()) {
+      SCOPED_TRACE(instruction_set_name(set));
+      const Kernels* kernels = listed_kernels(set, op.info().name);
+      ASSERT_NE(kernels, nullptr);
+      EXPECT_EQ(kernels == baseline, set == InstructionSet::baseline);
+      const Result result = run(op, *kernels, batch);
+      for (size_t i = 0; i < points; ++i) {
+        EXPECT_TRUE(same(result.value[i], expected.value[i]))
+            << result.value[i] << " and " << expected.value[i] << " at "
+            << testing::PrintToString(batch.at(i)) << ", parameters "
+            << testing::PrintToString(op.numbers());
+        for (size_t k = 0; k < result.partial.size(); ++k) {
+          EXPECT_TRUE(same(result.partial[k][i], expected.partial[k][i]))
+              << "partial " << k << ": " << result.partial[k][i] << " and "
+              << expected.partial[k][i] << " at " << testing::PrintToString(batch.at(i));
+        }
+      }
+    }
+  });
+}
+
+std::vector<double> partials_at(const Operation& op, const std::vector<double>& in) {
+  std::array<const double*, max_arity> at{};
+  std::array<double*, max_arity> to{};
+  std::vector<double> partial(in.size());
+  for (size_t k = 0; k < in.size(); ++k) {
+    at[k] = &in[k];
+    to[k] = &partial[k];
+  }
+  double value;
+  op.partials(at.data(), &value, to.data(), 1);
+  EXPECT_TRUE(value == op.evaluate(in.data()) || std::isnan(value));
+  return partial;
+}
+
+// Float partials match where the exact ones hardly change within the rounding of the arguments.
+TEST(BatchLaws, FloatPartialsEqualDoublePartials) {
+  laws::for_operations(laws::effort(30), [](auto, const Operation& op, Random& r) {
+    Batch batch(op.info().arity);
+    for (size_t i = 0; i < points; ++i) {
+      for (std::vector<float>& input : batch.inputs) input[i] = float(r.ordinary());
+    }
+    const Result result = run(op, op.kernels(), batch);
+    size_t compared = 0;
+    for (size_t i = 0; i < points; ++i) {
+      const std::vector<double> in = batch.at(i), expected = partials_at(op, in);
+      double change = 0, most = 1;
+      for (size_t k = 0; k < in.size(); ++k) {
+        for (const double step : {-1e-4, 1e-4}) {
+          std::vector<double> beside = in;
+          beside[k] += step;
+          const std::vector<double> partial = partials_at(op, beside);
+          for (size_t j = 0; j < in.size(); ++j) {
+            const double difference = std::abs(partial[j] - expected[j]);
+            change = std::isnan(difference) ? infinity : std::max(change, difference);
+            most = std::max(most, std::abs(expected[j]));
+          }
+        }
+      }
+      if (!(change < 0.01 * most)) continue;
+      ++compared;
+      for (size_t k = 0; k < in.size(); ++k) {
+        EXPECT_NEAR(result.partial[k][i], expected[k], change + 1e-4 * most)
+            << "partial " << k << " at " << testing::PrintToString(in) << ", parameters "
+            << testing::PrintToString(op.numbers());
+      }
+    }
+    EXPECT_GT(compared, 0u);
+  });
+}
+
+// Every constructor as a whole, its shapes' compositions included.
+TEST(BatchLaws, FieldsInFloatEqualFieldsInDouble) {
+  Random r(7);
+  size_t tested = 0;
+  for (const Constructor& constructor : constructors()) {
+    if (!laws::can_be_random(constructor)) continue;
+    ++tested;
+    SCOPED_TRACE(constructor.name);
+    for (int i = 0; i < laws::effort(30); ++i) {
+      const Evaluator evaluator(random_field(r, constructor, 1).expression());
+      std::vector<float> at(3 * points), out(points);
+      for (float& a : at) a = float(r.ordinary());
+      const std::vector<double> exact(at.begin(), at.end());
+      std::vector<double> expected(points);
+      evaluator.values(at.data(), points, out.data());
+      evaluator.values(exact.data(), points, expected.data());
+      for (size_t k = 0; k < points; ++k) {
+        EXPECT_NEAR(out[k], expected[k], 1e-4) << testing::PrintToString(at);
+      }
+    }
+  }
+  EXPECT_GT(tested, 20u);
+}
+
+}  // namespace
+}  // namespace sardf

@@ -21,6 +21,8 @@ constexpr double same_side = 0.9659;
 // Directions in which the normals tell less than this, relative to the best, are left alone: the
 // sides of an edge make 2 atan(sqrt(0.03)) = 20 degrees.
 constexpr double least_weight = 0.03;
+// How far a vertex may leave its room at first, in cells.
+constexpr double slack_in_cells = 1;
 // Distances from the surface, in cells: wanted, and accepted when it comes no nearer.
 constexpr double wanted_distance = 1e-6, accepted_distance = 1e-3;
 
@@ -43,13 +45,14 @@ struct Batch {
 class Features {
  public:
   Features(const Field& field, const Grid& grid, const Net& net, const CrossingPoints& crossings,
-           Vertices& vertices, std::vector<Vec3>& corner_normals)
+           Vertices& vertices, std::vector<Vec3>& corner_normals, double slack)
       : field_(field),
         grid_(grid),
         net_(net),
         crossings_(crossings),
         vertices_(vertices),
-        corner_normals_(corner_normals) {}
+        corner_normals_(corner_normals),
+        slack_(slack * grid.cell) {}
 
   void place(const uint32_t* numbers, size_t count) const {
     Batch batch{numbers, count, {}, {}};
@@ -68,6 +71,11 @@ class Features {
  private:
   uint32_t crossing_of(uint32_t vertex, uint32_t i) const {
     return net_.uses[net_.first_use[vertex] + i] / 4;
+  }
+
+  Vec3 in_room(const Vec3& point, uint32_t vertex) const {
+    const Vec3 slack{slack_, slack_, slack_};
+    return clamped(point, {net_.room[vertex].lo - slack, net_.room[vertex].hi + slack});
   }
 
   void start(Batch& batch) const {
@@ -120,7 +128,7 @@ class Features {
       if (sides == 0) continue;
       const Vec3 step = meeting_point(samples, n, sides, vertices_.at[v]);
       if (norm(step) < 4 * grid_.cell) {
-        vertices_.at[v] = clamped(vertices_.at[v] + step, net_.room[v]);
+        vertices_.at[v] = in_room(vertices_.at[v] + step, v);
       }
     }
   }
@@ -186,7 +194,7 @@ class Features {
           nearest = std::abs(value);
           vertices_.at[v] = at;
         }
-        at = clamped(at + newton_step(value, points.gradient_at(0)), net_.room[v]);
+        at = in_room(at + newton_step(value, points.gradient_at(0)), v);
       }
       if (!(nearest <= accepted_distance * one_cell)) vertices_.at[v] = nearest_crossing(v);
     }
@@ -206,7 +214,7 @@ class Features {
       const Vec3& p = crossings_.at[crossing_of(v, i)];
       if (norm(p - vertices_.at[v]) < norm(best - vertices_.at[v])) best = p;
     }
-    return clamped(best, net_.room[v]);
+    return in_room(best, v);
   }
 
   // Each face gets the mean normal of its side.
@@ -234,6 +242,7 @@ class Features {
   const CrossingPoints& crossings_;
   Vertices& vertices_;
   std::vector<Vec3>& corner_normals_;
+  double slack_;  // how far a vertex may leave its room
 };
 
 }  // namespace
@@ -241,10 +250,18 @@ class Features {
 void place_features(const Field& field, const Grid& grid, const Net& net,
                     const CrossingPoints& crossings, Vertices& vertices,
                     std::vector<Vec3>& corner_normals, Work& work) {
-  const Features features(field, grid, net, crossings, vertices, corner_normals);
-  work.run(vertices.sharp.size(), 32, [&](size_t first, size_t last) {
-    features.place(&vertices.sharp[first], last - first);
-  });
+  const auto place = [&](const std::vector<uint32_t>& numbers, double slack) {
+    const Features features(field, grid, net, crossings, vertices, corner_normals, slack);
+    work.run(numbers.size(), 32,
+             [&](size_t first, size_t last) { features.place(&numbers[first], last - first); });
+  };
+  place(vertices.sharp, slack_in_cells);
+  // Those that were taken back stay in their room, so this ends.
+  for (;;) {
+    const auto numbers = vertices_to_take_back(grid, net, crossings, vertices);
+    if (numbers.empty()) break;
+    place(numbers, 0);
+  }
 }
 
 }  // namespace sardf::mesher

@@ -204,9 +204,12 @@ Net build_net(Cells& cells, const Grid& grid, Work& work) {
   std::vector<uint32_t> first_vertex;
   make_vertices(cells, grid, net, first_vertex);
   net.faces.resize(cells.crossings.size());
+  net.direction.resize(cells.crossings.size());
   work.run(net.faces.size(), 4096, [&](size_t first, size_t last) {
     for (size_t i = first; i < last; ++i) {
-      net.faces[i] = make_face(cells, first_vertex, cells.crossings[i]);
+      const Crossing& crossing = cells.crossings[i];
+      net.faces[i] = make_face(cells, first_vertex, crossing);
+      net.direction[i] = int8_t(crossing.leaves ? crossing.axis + 1 : -crossing.axis - 1);
     }
   });
   collect_uses(net);

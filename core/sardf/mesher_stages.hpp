@@ -71,11 +71,18 @@ struct Pieces {
 /// 4 * face + corner.
 struct Net {
   std::vector<std::array<uint32_t, 4>> faces;  // counter-clockwise seen from outside
+  std::vector<int8_t> direction;               // of each face: its grid edge points outwards along
+                                               // axis direction - 1, or -direction - 1 backwards
   std::vector<uint32_t> cell;                  // of each vertex
   std::vector<uint32_t> first_use;             // of each vertex, and the end of the last
   std::vector<uint32_t> uses;                  // of vertex v: first_use[v] to first_use[v + 1]
   std::vector<BoundingBox> room;               // of each vertex, see mesher_cells.cpp
   size_t vertex_count() const { return cell.size(); }
+  Vec3 direction_of(uint32_t face) const {
+    Vec3 result{};
+    result[std::abs(direction[face]) - 1] = direction[face] > 0 ? 1 : -1;
+    return result;
+  }
 };
 
 /// Where the crossings lie and the unit outward normals there (0 where there is none).
@@ -106,6 +113,11 @@ Vertices place_vertices(const Field& field, const Grid& grid, const Net& net,
 void place_features(const Field& field, const Grid& grid, const Net& net,
                     const CrossingPoints& crossings, Vertices& vertices,
                     std::vector<Vec3>& corner_normals, Work& work);
+/// Of each face that turned over or shrank to nothing, because sharp vertices lie outside of their
+/// room, the vertex that lies farthest outside.
+std::vector<uint32_t> vertices_to_take_back(const Grid& grid, const Net& net,
+                                            const CrossingPoints& crossings,
+                                            const Vertices& vertices);
 std::vector<std::array<uint32_t, 2>> find_creases(const Net& net, const Vertices& vertices,
                                                   const std::vector<Vec3>& corner_normals);
 

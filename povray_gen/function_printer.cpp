@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <unordered_map>
+#include <utility>
 
 #include "sardf/error.hpp"
 
@@ -55,9 +57,9 @@ std::string wrapped(const std::string& text) {
 /// Prints one declared function and its helpers.
 class FamilyPrinter {
  public:
-  FamilyPrinter(FunctionPrinter& out, const std::string& name, const Terms& terms, int root,
+  FamilyPrinter(FunctionPrinter& out, const std::string& name, const Terms& terms, LetPlan plan,
                 InputNames input_names)
-      : out_(out), name_(name), terms_(terms), plan_(terms, root), input_names_(input_names) {}
+      : out_(out), name_(name), terms_(terms), plan_(std::move(plan)), input_names_(input_names) {}
 
   void declare(int root, int inputs) {
     const Dominators& dominators = plan_.dominators();
@@ -251,7 +253,22 @@ class FamilyPrinter {
 
 void FunctionPrinter::declare(const std::string& name, const Terms& terms, int root, int inputs,
                               InputNames input_names) {
-  FamilyPrinter(*this, name, terms, root, input_names).declare(root, inputs);
+  // A costly branch may need very many values that could be used up on the way to it.
+  const Terms eager = terms.without_branches();
+  const std::pair<const Terms*, LetPlan::Simple> attempts[] = {{&terms, LetPlan::Simple::bind},
+                                                               {&eager, LetPlan::Simple::bind},
+                                                               {&eager, LetPlan::Simple::repeat}};
+  for (const auto& [attempted, simple] : attempts) {
+    std::optional<LetPlan> plan;
+    try {
+      plan.emplace(*attempted, root, simple);
+    } catch (const Error&) {
+      if (simple == LetPlan::Simple::repeat) throw;
+      continue;
+    }
+    FamilyPrinter(*this, name, *attempted, std::move(*plan), input_names).declare(root, inputs);
+    return;
+  }
 }
 
 FunctionPrinter::Call FunctionPrinter::helper(const std::string& base, const std::string& signature,

@@ -14,15 +14,20 @@ namespace {
 constexpr int readable_height = 100;
 // Deep graphs take taller pieces, so that their chain of calls stays below POV-Ray's 1024.
 constexpr int most_pieces = 300;
+constexpr int repeated_operators = 4;
+// A scope that needs more values from outside is no unit: what is in it is computed as they come.
+constexpr int many_values = most_parameters / 2;
 
 }  // namespace
 
-LetPlan::LetPlan(const Terms& terms, int root)
+LetPlan::LetPlan(const Terms& terms, int root, Simple simple)
     : terms_(terms), root_(root), dominators_(terms, root) {
   const int nodes = dominators_.nodes();
   for (auto* list : {&home_, &stage_, &owner_}) list->assign(nodes, -1);
   for (auto* list : {&children_, &height_, &tallest_}) list->assign(nodes, 0);
   scopes_.resize(nodes);
+  repeated_.assign(nodes, false);
+  if (simple == Simple::repeat) find_repeated_terms();
   bind_shared_terms();
   for (int term = 0; term <= root; ++term) {
     if (!dominators_.is_reached(term)) continue;
@@ -39,9 +44,23 @@ void LetPlan::bind_shared_terms() {
     if (!dominators_.is_reached(term) || terms_[term].is_leaf()) continue;
     for (int operand : terms_[term].operands) depth[term] = std::max(depth[term], depth[operand]);
     ++depth[term];
-    if (dominators_.uses(term) > 1) move_home(term, dominators_.parent(term));
+    if (dominators_.uses(term) > 1 && !repeated_[term]) move_home(term, dominators_.parent(term));
   }
   most_height_ = std::max(readable_height, depth[root_] / most_pieces);
+}
+
+void LetPlan::find_repeated_terms() {
+  std::vector<int> operators(size_t(root_) + 1, 0);
+  for (int term = 0; term < root_; ++term) {
+    if (!terms_[term].is_operator()) continue;
+    bool simple = true;
+    operators[term] = 1;
+    for (int operand : terms_[term].operands) {
+      simple = simple && (terms_[operand].is_leaf() || repeated_[operand]);
+      operators[term] += operators[operand];
+    }
+    repeated_[term] = simple && operators[term] <= repeated_operators;
+  }
 }
 
 void LetPlan::move_home(int term, int home) {
@@ -79,13 +98,9 @@ int LetPlan::text_height(int node) const {
 // allow.
 void LetPlan::limit_height(int node) {
   if (height_[node] < most_height_ || node == root_) return;
-  int home = dominators_.region(node);
-  if (dominators_.is_branch(home) && dominators_.term_of(home) == node) return;
-  for (int used : references(node, false)) {
-    const int outer = home_[used];
-    if (outer >= 0 && dominators_.depth(outer) > dominators_.depth(home)) home = outer;
-  }
-  move_home(node, home);
+  const int region = dominators_.region(node);
+  if (dominators_.is_branch(region) && dominators_.term_of(region) == node) return;
+  move_home(node, outermost_home(node, references(node, false)));
 }
 
 // The values and inputs that the node's text uses; those bound in the node itself only if `inside`.
@@ -123,6 +138,28 @@ std::vector<int> LetPlan::references(int node, bool inside) const {
   return out;
 }
 
+// Where a term can be bound at the farthest: in its region, below the homes of what it uses.
+int LetPlan::outermost_home(int node, const std::vector<int>& used_values) const {
+  int home = dominators_.region(node);
+  for (int used : used_values) {
+    const int outer = home_[used];
+    if (outer >= 0 && dominators_.depth(outer) > dominators_.depth(home)) home = outer;
+  }
+  return home;
+}
+
+// Moves what is bound in a node outwards; false if that is impossible.
+bool LetPlan::dissolve(int node, const std::vector<int>& terms) {
+  const int outer = outermost_home(node, scopes_[node].free);
+  if (outer == node) return false;
+  for (int term : terms) {
+    if (home_[term] == node) move_home(term, outer);
+  }
+  tallest_[outer] = std::max(tallest_[outer], tallest_[node]);
+  scopes_[node].free.clear();
+  return true;
+}
+
 namespace {
 
 // Collects the items of one scope, each term once, and then numbers them operands first.
@@ -149,7 +186,17 @@ void LetPlan::build_scope(int node) {
       // A scope inside this one, or a choose: nothing is taken out of it.
       uses = references(term, term == node);
     } else {
-      uses = terms_[term].operands;
+      std::vector<int> operands = terms_[term].operands;
+      while (!operands.empty()) {
+        const int operand = operands.back();
+        operands.pop_back();
+        const std::vector<int>& below = terms_[operand].operands;
+        if (repeated_[operand]) {
+          operands.insert(operands.end(), below.begin(), below.end());
+        } else {
+          uses.push_back(operand);
+        }
+      }
     }
     for (int used : uses) {
       const bool free = home_[used] >= 0 && home_[used] != node;
@@ -179,6 +226,7 @@ void LetPlan::build_scope(int node) {
     position[term] = int(items.size());
     items.push_back(std::move(item));
   }
+  if (int(scope.free.size()) > many_values && dissolve(node, terms)) return;
   const Schedule plan = schedule(items, int(scope.free.size()), most_parameters);
   scope.stages = plan.stages;
   for (size_t i = 0; i < items.size(); ++i) {

@@ -26,8 +26,13 @@ struct Scope {
 
 class LetPlan {
  public:
+  /// What to do with a few shared operators on inputs and numbers, such as 0.5 * (x - 3).
+  enum class Simple {
+    bind,    // as with all shared terms
+    repeat,  // write them again: they cost little more than passing them, and take no parameter
+  };
   /// Throws Error if more values than a function can have are needed at once.
-  LetPlan(const Terms& terms, int root);
+  LetPlan(const Terms& terms, int root, Simple simple = Simple::bind);
 
   const Dominators& dominators() const { return dominators_; }
   /// The scope at a node; its stages are 0 where there is none.
@@ -40,22 +45,26 @@ class LetPlan {
 
  private:
   void bind_shared_terms();
+  void find_repeated_terms();
   void process(int node);
   int text_height(int node) const;
   void limit_height(int node);
   std::vector<int> references(int node, bool inside) const;
   void build_scope(int node);
+  bool dissolve(int node, const std::vector<int>& terms);
+  int outermost_home(int node, const std::vector<int>& used_values) const;
   void move_home(int term, int home);
 
   const Terms& terms_;
   int root_;
   Dominators dominators_;
-  std::vector<int> home_;      // of bound terms, else -1
-  std::vector<int> children_;  // by node: terms bound there
-  std::vector<int> height_;    // by node: nesting of its text
-  std::vector<int> tallest_;   // by node: height of the tallest term bound there
-  std::vector<int> stage_;     // of values, else -1
-  std::vector<int> owner_;     // by term: the scope that it is computed in
+  std::vector<bool> repeated_;  // by term: written wherever it is used
+  std::vector<int> home_;       // of bound terms, else -1
+  std::vector<int> children_;   // by node: terms bound there
+  std::vector<int> height_;     // by node: nesting of its text
+  std::vector<int> tallest_;    // by node: height of the tallest term bound there
+  std::vector<int> stage_;      // of values, else -1
+  std::vector<int> owner_;      // by term: the scope that it is computed in
   std::vector<Scope> scopes_;
   int most_height_ = 0;
 };

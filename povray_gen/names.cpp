@@ -9,8 +9,6 @@ namespace sardf::povray {
 
 namespace {
 
-constexpr int most_parameters = 56;
-
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -34,7 +32,6 @@ Names::Names(const std::string& title) : prefix_(identifier(title)) {
   // POV-Ray cuts identifiers after 40 characters or more, depending on its version.
   prefix_ = identifier(prefix_.substr(0, 24));
   if (prefix_.empty() || !is_letter(prefix_[0])) prefix_ = "part" + prefix_;
-  for (int i = 0; i < most_parameters; ++i) taken_.insert(parameter(i));
 }
 
 std::string Names::join(const std::string& word) const {
@@ -52,14 +49,14 @@ std::string Names::unique(const std::string& word) {
 
 std::string Names::numbered(const std::string& word) {
   const std::string first = join(word);
-  for (int i = 1;; ++i) {
-    const std::string name = first + "_" + std::to_string(i);
+  for (int& number = numbers_[first];;) {
+    const std::string name = first + "_" + std::to_string(++number);
     if (taken_.insert(name).second) return name;
   }
 }
 
 std::string Names::parameter(int index) const {
-  std::string name = prefix_ + "_" + char('a' + index % 26);
+  std::string name = prefix_ + "__" + char('a' + index % 26);
   if (index >= 26) name += std::to_string(index / 26);
   return name;
 }

@@ -1,6 +1,7 @@
 // Identifiers that POV-Ray accepts and that clash with nobody's.
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
 
@@ -21,8 +22,8 @@ class Names {
   std::string unique(const std::string& word);
   /// PREFIX_word_1, PREFIX_word_2, ...: the first that is free.
   std::string numbered(const std::string& word);
-  /// The name of the parameter `index` (from 0) of a function: PREFIX_a ... PREFIX_z, PREFIX_a1 ...
-  /// The same for every function; unique() and numbered() never give it out.
+  /// The name of the parameter `index` (from 0) of a function: PREFIX__a ... PREFIX__z, PREFIX__a1
+  /// ... The same for every function, and different from what unique() and numbered() give out.
   std::string parameter(int index) const;
 
  private:
@@ -30,6 +31,7 @@ class Names {
 
   std::string prefix_;
   std::set<std::string> taken_;
+  std::map<std::string, int> numbers_;  // the last number given out after a word
 };
 
 /// The shortest text that reads back as the same double, with a decimal point in every locale.

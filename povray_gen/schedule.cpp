@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "sardf/error.hpp"
@@ -72,15 +73,50 @@ Schedule by_level(const Items& items, int free_count, int most) {
   return out;
 }
 
-// Every term is computed as soon as its turn comes, in the order of blocks of the formula and of
-// levels inside a block; the chain is cut where a shared value is first used. Wide sums, whose
-// terms all wait for the end in by_level, become running sums.
-Schedule in_blocks(const Items& items, int free_count, int most, int block) {
+// An order in which few values are alive at a time: what frees most comes first, then what uses
+// something that is there already.
+std::vector<int> order_of_least_pressure(const Items& items) {
   const int n = int(items.size());
-  std::vector<int> order(n), at(n), last(n, -1), last_free(free_count, -1);
-  std::iota(order.begin(), order.end(), 0);
+  std::vector<int> missing(n), remaining_uses(n, 0), order, ready;
+  std::vector<std::vector<int>> users(n);
+  for (int i = 0; i < n; ++i) {
+    missing[i] = int(items[i].items.size());
+    for (int used : items[i].items) {
+      ++remaining_uses[used];
+      users[used].push_back(i);
+    }
+    if (missing[i] == 0) ready.push_back(i);
+  }
+  const auto freed = [&](int item) {
+    return std::count_if(items[item].items.begin(), items[item].items.end(),
+                         [&](int used) { return remaining_uses[used] == 1; });
+  };
+  while (!ready.empty()) {
+    const auto best = std::max_element(ready.begin(), ready.end(), [&](int a, int b) {
+      return std::tuple(freed(a), !items[a].items.empty(), -a) <
+             std::tuple(freed(b), !items[b].items.empty(), -b);
+    });
+    const int item = *best;
+    ready.erase(best);
+    order.push_back(item);
+    for (int used : items[item].items) --remaining_uses[used];
+    for (int user : users[item]) {
+      if (--missing[user] == 0) ready.push_back(user);
+    }
+  }
+  return order;
+}
+
+// Every term is computed as soon as its turn comes, in the order of blocks of `base` and of levels
+// inside a block; the chain is cut where a shared value is first used. Wide sums, whose terms all
+// wait for the end in by_level, become running sums.
+Schedule in_blocks(const Items& items, const std::vector<int>& base, int free_count, int most,
+                   int block) {
+  const int n = int(items.size());
+  std::vector<int> order(base), rank(n), at(n), last(n, -1), last_free(free_count, -1);
+  for (int p = 0; p < n; ++p) rank[base[p]] = p;
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-    return std::pair(a / block, items[a].level) < std::pair(b / block, items[b].level);
+    return std::pair(rank[a] / block, items[a].level) < std::pair(rank[b] / block, items[b].level);
   });
   for (int p = 0; p < n; ++p) at[order[p]] = p;
   for (int i = 0; i < n; ++i) {
@@ -127,10 +163,16 @@ Schedule in_blocks(const Items& items, int free_count, int most, int block) {
 Schedule schedule(std::vector<ScopeItem>& items, int free_count, int most_parameters) {
   set_levels(items);
   Schedule found = by_level(items, free_count, most_parameters);
-  for (int block = int(items.size()); found.stage.empty() && block >= 1; block /= 2) {
-    found = in_blocks(items, free_count, most_parameters, block);
-  }
   if (!found.stage.empty()) return found;
+  const int n = int(items.size());
+  std::vector<int> as_written(n);
+  std::iota(as_written.begin(), as_written.end(), 0);
+  for (const auto& base : {as_written, order_of_least_pressure(items)}) {
+    for (int block = n; block >= 1; block /= 2) {
+      found = in_blocks(items, base, free_count, most_parameters, block);
+      if (!found.stage.empty()) return found;
+    }
+  }
   throw Error("a formula needs more than " + std::to_string(most_parameters) +
               " intermediate values at once; POV-Ray functions have at most that many parameters");
 }

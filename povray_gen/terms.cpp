@@ -226,6 +226,15 @@ int Terms::append(const Trace& trace, std::span<const int> inputs) {
   return TraceReader(*this, trace, inputs).result();
 }
 
+Terms Terms::without_branches() const {
+  Terms out(*this);
+  for (Term& term : out.terms_) {
+    if (term.kind == Term::Kind::choose) term.kind = Term::Kind::apply;
+  }
+  out.known_.clear();
+  return out;
+}
+
 int Terms::operations(int term, int limit) const {
   std::unordered_set<int> seen;
   std::vector<int> pending{term};

@@ -29,6 +29,10 @@ struct Term {
   double value = 0;
   std::vector<int> operands;
 
+  bool is_operator() const {
+    return kind == Kind::apply &&
+           (operands.size() == 1 ? function == "negate" : function.size() == 1);
+  }
   bool is_leaf() const { return kind == Kind::input || kind == Kind::number; }
 };
 
@@ -43,6 +47,9 @@ class Terms {
   int select(int condition, int where_negative, int elsewhere, bool lazy);
   /// Adds what the trace records, for these inputs; returns the term of its result.
   int append(const Trace& trace, std::span<const int> inputs);
+
+  /// The same terms with every choose a "select": what its branches need may be evaluated early.
+  Terms without_branches() const;
 
   const Term& operator[](int term) const { return terms_[term]; }
   int size() const { return int(terms_.size()); }

@@ -62,6 +62,19 @@ void collect_materials(const std::vector<RuleValue>& values, std::vector<std::st
   }
 }
 
+bool any_uses_rule(const std::vector<RuleValue>& values, const std::string& name) {
+  for (const RuleValue& value : values) {
+    if (const auto* nested = std::get_if<Fractions>(&value)) {
+      if (uses_rule(*nested, name)) return true;
+    } else if (const auto* records = std::get_if<std::vector<Record>>(&value)) {
+      for (const Record& record : *records) {
+        if (any_uses_rule(record.values, name)) return true;
+      }
+    }
+  }
+  return false;
+}
+
 bool equals(const Expression& e, double value) { return is_constant(e) && e->value == value; }
 
 }  // namespace
@@ -143,6 +156,12 @@ std::vector<std::string> materials_of(const Fractions& fractions) {
   std::vector<std::string> names;
   if (fractions) collect_materials(fractions.rule().arguments, names);
   return names;
+}
+
+bool uses_rule(const Fractions& fractions, const std::string& name) {
+  if (!fractions) return false;
+  const Rule& rule = fractions.rule();
+  return rule.type->name == name || any_uses_rule(rule.arguments, name);
 }
 
 }  // namespace sardf

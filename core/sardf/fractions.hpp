@@ -125,6 +125,8 @@ Expression feature_distance(const Field& field);
 
 /// The materials that a rule names, each once, in order.
 std::vector<std::string> materials_of(const Fractions& fractions);
+/// Whether the rule, or one inside it, is of that name.
+bool uses_rule(const Fractions& fractions, const std::string& name);
 
 /// u at or below this share of the scene's diagonal counts as on the feature.
 inline constexpr double on_feature = 1e-12;

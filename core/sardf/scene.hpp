@@ -1,8 +1,7 @@
 // A scene: a solid, what it is made of, and how it is shown. Scene files and Python both make one.
 #pragma once
 
-#include <memory>
-#include <mutex>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -26,11 +25,14 @@ struct Material {
   std::vector<std::pair<std::string, std::string>> metadata;  // free: name, JSON text of the value
 };
 
-/// A scalar (one component) or vector function on the object.
+/// A scalar (one component) or vector function on the object: a field for each component, or a
+/// rule as for fractions, from which Scene makes the components.
 struct Attribute {
   std::string name;
   std::string unit;  // free text
   std::vector<Field> components;
+  Fractions rule;
+  size_t rule_components = 1;
 };
 
 /// A cut: what is removed from the picture, except from the parts that are kept whole.
@@ -49,6 +51,12 @@ struct Framing {
   Vec3 direction{0.5, -0.78, 0.42};  // from the object towards the camera
 };
 
+/// The file a scene was read from and the lines of its main parts, by JSON pointer; else empty.
+struct SceneSource {
+  std::string file;
+  std::map<std::string, int> lines;
+};
+
 /// What the user states. Make it ready with Scene(description).
 struct SceneDescription {
   std::string title;
@@ -64,8 +72,11 @@ struct SceneDescription {
   std::optional<BoundingBox> stated_bounds;  // proven, not believed
   std::optional<double> stated_lipschitz;    // of the solid; believed, and labelled so
   Framing view;
+  SceneSource source;
 };
 
+/// The units of length that a scene may have: um, mm, cm, m, in.
+std::vector<std::string> unit_names();
 /// Metres per unit; Error for an unknown unit.
 double metres_per_unit(const std::string& units);
 
@@ -85,7 +96,7 @@ class Scene {
   const Expression& solid() const { return description_.solid.expression(); }
   /// The solid with its sections cut away: what is drawn.
   const Expression& drawn() const { return drawn_; }
-  /// The solids that the sections remove, joined: >= 0 where material was cut away. Null: none.
+  /// What the sections remove, joined: >= 0 where material was cut away. Null: none.
   const Expression& removed() const { return removed_; }
 
   /// One for each material, >= 0, their sum 1, defined in all of space.
@@ -106,6 +117,7 @@ class Scene {
   BoundingBox bounds_;
   Expression drawn_, removed_;
   std::vector<Expression> fractions_;
+  Evaluator fraction_evaluator_;  // the fractions, then the solid
 };
 
 }  // namespace sardf

@@ -1,0 +1,232 @@
+#include "sardf/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "sardf/arithmetic.hpp"
+#include "sardf/bounds.hpp"
+#include "sardf/error.hpp"
+
+namespace sardf {
+
+namespace {
+
+struct LengthUnit {
+  const char* name;
+  double metres;
+};
+constexpr LengthUnit length_units[] = {
+    {"um", 1e-6}, {"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}, {"in", 0.0254}};
+
+[[noreturn]] void fail(const SceneDescription& scene, const std::string& pointer,
+                       const std::string& message) {
+  const auto line = scene.source.lines.find(pointer);
+  if (line == scene.source.lines.end()) throw Error(message, scene.source.file, 0, "");
+  throw Error(message, scene.source.file, line->second, pointer);
+}
+
+// Runs f; its errors get the place in the scene file.
+template <class F>
+auto located(const SceneDescription& scene, const std::string& pointer, F f) {
+  try {
+    return f();
+  } catch (const Error& error) {
+    fail(scene, pointer, error.message);
+  }
+}
+
+std::string text_of(const double* p) {
+  char text[100];
+  std::snprintf(text, sizeof text, "(%g, %g, %g)", p[0], p[1], p[2]);
+  return text;
+}
+
+std::string cannot_normalise(const double* point) {
+  return "fractions cannot be normalised at " + text_of(point) +
+         ": the sum of the formulas is not positive there";
+}
+
+void check_materials(SceneDescription& scene) {
+  if (scene.materials.empty()) {
+    scene.materials.emplace_back();
+    scene.materials.back().name = "material";
+  }
+  std::set<std::string> names;
+  for (const Material& m : scene.materials) {
+    if (m.name.empty()) fail(scene, "/materials", "a material has no name");
+    if (!names.insert(m.name).second) {
+      fail(scene, "/materials", "there are two materials named '" + m.name + "'");
+    }
+  }
+}
+
+void check_parts(SceneDescription& scene) {
+  if (!scene.solid) fail(scene, "", "the scene has no solid");
+  metres_per_unit(scene.units);
+  check_materials(scene);
+  std::set<std::string> names;
+  for (const Attribute& a : scene.attributes) {
+    if (!names.insert(a.name).second) {
+      fail(scene, "/attributes", "there are two attributes named '" + a.name + "'");
+    }
+  }
+  for (const Section& section : scene.sections) {
+    if (!section.remove) fail(scene, "/sections", "a section removes nothing");
+  }
+}
+
+// The part of space that one section takes away.
+Expression taken(const Section& section) {
+  Expression removed = section.remove.expression();
+  for (const Field& kept : section.keep) removed = min(removed, -kept.expression());
+  return removed;
+}
+
+// Formulas may sum to 0 somewhere in the solid; found by sampling, it is said before work starts.
+void check_sums(const SceneDescription& scene, const std::vector<Expression>& fractions,
+                const BoundingBox& box) {
+  if (!uses_rule(scene.fractions, "formulas")) return;
+  Expression sum = constant(0);
+  for (const Expression& fraction : fractions) sum = sum + fraction;
+  constexpr size_t per_axis = 32, n = per_axis * per_axis * per_axis;
+  std::vector<double> points(3 * n), values(2 * n);
+  for (size_t i = 0; i < n; ++i) {
+    const size_t place[3] = {i % per_axis, i / per_axis % per_axis, i / (per_axis * per_axis)};
+    for (int axis = 0; axis < 3; ++axis) {
+      const double share = (double(place[axis]) + 0.5) / double(per_axis);
+      points[3 * i + axis] = box.lo[axis] + share * (box.hi[axis] - box.lo[axis]);
+    }
+  }
+  const std::vector<Expression> outputs{scene.solid.expression(), sum};
+  Evaluator(outputs).values(points.data(), n, values.data());
+  for (size_t i = 0; i < n; ++i) {
+    if (values[2 * i] >= 0 && !(values[2 * i + 1] > 0.5)) {
+      fail(scene, "/fractions", cannot_normalise(&points[3 * i]));
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> unit_names() {
+  std::vector<std::string> names;
+  for (const LengthUnit& unit : length_units) names.push_back(unit.name);
+  return names;
+}
+
+double metres_per_unit(const std::string& units) {
+  for (const LengthUnit& unit : length_units) {
+    if (units == unit.name) return unit.metres;
+  }
+  throw Error("units is '" + units + "'; accepted are um, mm, cm, m and in" +
+              did_you_mean(units, unit_names()));
+}
+
+Scene::Scene(SceneDescription description, const Progress& progress)
+    : description_(std::move(description)) {
+  SceneDescription& scene = description_;
+  check_parts(scene);
+  bounds_ = located(scene, "/solid", [&] {
+    return certified_bounds(Evaluator(solid()), progress, scene.stated_bounds);
+  });
+  drawn_ = solid();
+  for (const Section& section : scene.sections) {
+    const Expression removed = taken(section);
+    drawn_ = min(drawn_, -removed);
+    removed_ = removed_ ? max(removed_, removed) : removed;
+  }
+  const std::vector<std::string> names = material_names();
+  const double diagonal = bounds_.diagonal();
+  fractions_ = located(scene, "/fractions", [&] {
+    return lower(scene.fractions ? scene.fractions : Fractions::material(names[0]), names,
+                 diagonal);
+  });
+  check_sums(scene, fractions_, bounds_);
+  for (Attribute& attribute : scene.attributes) {
+    if (!attribute.rule) continue;
+    const auto lowered = located(scene, "/attributes/" + attribute.name, [&] {
+      return lower(attribute.rule, {names, diagonal, attribute.rule_components, fractions_});
+    });
+    attribute.components.clear();
+    for (const Expression& e : lowered) attribute.components.push_back(Field(e, {}, nullptr));
+  }
+  std::vector<Expression> outputs = fractions_;
+  outputs.push_back(solid());
+  fraction_evaluator_ = Evaluator(outputs);
+}
+
+std::vector<std::string> Scene::material_names() const {
+  std::vector<std::string> names;
+  for (const Material& m : description_.materials) names.push_back(m.name);
+  return names;
+}
+
+namespace {
+
+// Σ fraction × property; a constant where all materials have the same.
+template <class Property>
+Expression averaged(const Scene& scene, Property property) {
+  const std::vector<Material>& materials = scene.description().materials;
+  const auto is_same = [&](const Material& m) { return property(m) == property(materials[0]); };
+  if (std::all_of(materials.begin(), materials.end(), is_same)) {
+    return constant(property(materials[0]));
+  }
+  Expression total = constant(0);
+  for (size_t i = 0; i < materials.size(); ++i) {
+    const double value = property(materials[i]);
+    if (value != 0) total = total + scene.fractions()[i] * constant(value);
+  }
+  return total;
+}
+
+}  // namespace
+
+std::array<Expression, 3> Scene::base_color() const {
+  std::array<Expression, 3> color;
+  for (size_t c = 0; c < 3; ++c) {
+    color[c] = averaged(*this, [c](const Material& m) { return m.color[c]; });
+  }
+  return color;
+}
+
+std::array<Expression, 3> Scene::emission() const {
+  std::array<Expression, 3> color;
+  for (size_t c = 0; c < 3; ++c) {
+    color[c] = averaged(*this, [c](const Material& m) { return m.emission[c]; });
+  }
+  return color;
+}
+
+Expression Scene::roughness() const {
+  return averaged(*this, [](const Material& m) { return m.roughness; });
+}
+
+Expression Scene::metallic() const {
+  return averaged(*this, [](const Material& m) { return m.metallic; });
+}
+
+void Scene::fractions_at(const double* points, size_t n, double* out, bool outside_nan) const {
+  const size_t count = fractions_.size(), outputs = count + 1;
+  constexpr size_t at_once = 1 << 16;
+  std::vector<double> values(std::min(n, at_once) * outputs);
+  for (size_t first = 0; first < n; first += at_once) {
+    const size_t m = std::min(at_once, n - first);
+    fraction_evaluator_.values(points + 3 * first, m, values.data());
+    for (size_t i = 0; i < m; ++i) {
+      const double* row = &values[i * outputs];
+      double* to = out + (first + i) * count;
+      if (outside_nan && !(row[count] >= 0)) {
+        std::fill_n(to, count, std::nan(""));
+        continue;
+      }
+      double sum = 0;
+      for (size_t k = 0; k < count; ++k) sum += row[k];
+      // Defined fractions sum to 1 but for rounding.
+      if (!(sum > 0.5)) throw Error(cannot_normalise(points + 3 * (first + i)));
+      for (size_t k = 0; k < count; ++k) to[k] = row[k] / sum;
+    }
+  }
+}
+
+}  // namespace sardf

@@ -106,8 +106,10 @@ Expression apply_operator(const std::string& symbol, const Expression& a, const 
 bool is_function(const std::string& name) { return find_special(name) || find_function(name); }
 
 std::vector<std::string> all_functions() {
-  std::vector<std::string> names = function_names();
-  names.push_back("length");
+  std::vector<std::string> names{"length"};
+  for (const std::string& name : function_names()) {
+    if (name != "length2" && name != "length3") names.push_back(name);
+  }
   return names;
 }
 

@@ -12,6 +12,7 @@ namespace sardf {
 Expression apply_operator(const std::string& symbol, const Expression& a, const Expression& b);
 
 bool is_function(const std::string& name);
+/// The functions that are offered to users: length stands for length2 and length3.
 std::vector<std::string> all_functions();
 
 /// What is wrong with that many arguments, or "".

@@ -34,6 +34,9 @@ struct JsonMember {
 /// "a number", "an object", ...
 std::string json_type_name(const JsonValue& value);
 
+/// The value as JSON text on one line.
+std::string json_text(const JsonValue& value);
+
 /// A JSON pointer with one more step; `key` is escaped.
 std::string pointer_to(const std::string& pointer, const std::string& key);
 std::string pointer_to(const std::string& pointer, size_t index);

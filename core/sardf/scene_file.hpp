@@ -1,6 +1,7 @@
 // Scene files: JSON with comments, read with every error located, and written back.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -17,14 +18,21 @@ struct SceneErrors : Error {
 
 /// Reads a scene; "-" reads standard input. Throws SceneErrors.
 SceneDescription read_scene(const std::string& path);
-/// The same from text; `file` is the name that errors carry.
-SceneDescription parse_scene(const std::string& text, const std::string& file);
+/// The same from text; `file` is the name that errors carry, `fields` are names it may use besides
+/// its own.
+SceneDescription parse_scene(const std::string& text, const std::string& file,
+                             const std::map<std::string, Field>& fields = {});
 
 /// The scene as text that parse_scene reads back to equal expressions. Shared fields are named.
 std::string scene_text(const SceneDescription& scene);
+/// Writes a temporary file and renames it; "-" writes standard output.
 void write_scene(const std::string& path, const SceneDescription& scene);
 
 /// The JSON Schema (draft 2020-12) of scene files, generated from the registries.
 std::string scene_schema();
+
+/// The keys of a scene, and of a material, in the order in which they are written.
+std::vector<std::string> scene_keys();
+std::vector<std::string> material_keys();
 
 }  // namespace sardf

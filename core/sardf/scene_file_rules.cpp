@@ -1,0 +1,225 @@
+#include "sardf/scene_file_rules.hpp"
+
+#include <algorithm>
+
+namespace sardf {
+
+namespace {
+
+using Type = JsonValue::Type;
+
+bool is_whole(const RuleType& type) {
+  const RuleParameterType first = type.parameters[0].type;
+  return first == RuleParameterType::shares || first == RuleParameterType::functions;
+}
+
+}  // namespace
+
+std::vector<std::string> keys_of(const RuleParameter& parameter, bool of_values) {
+  if (parameter.type != RuleParameterType::fractions) return {parameter.name};
+  if (of_values) return {"value"};
+  return {"material", "fractions"};
+}
+
+bool RuleReader::check_material(const std::string& name, const JsonPlace* place,
+                                const JsonPlace* object, const JsonMember* member) {
+  if (std::find(materials.begin(), materials.end(), name) != materials.end()) return true;
+  const std::string message = "there is no material '" + name + "'" + did_you_mean(name, materials);
+  if (place) {
+    error(*place, message);
+  } else {
+    error_at_key(*object, *member, message);
+  }
+  return false;
+}
+
+Fractions RuleReader::fractions(const JsonPlace& place) {
+  if (place.value->is(Type::string)) {
+    if (!check_material(place.value->text, &place, nullptr, nullptr)) return {};
+    return Fractions::material(place.value->text);
+  }
+  if (place.value->is(Type::object)) return rule(place, {nullptr});
+  wrong_type(place, "a material's name, or an object such as {\"ramp\": {...}}");
+  return {};
+}
+
+Fractions RuleReader::value(const JsonPlace& place, size_t& components) {
+  const JsonValue& json = *place.value;
+  const bool is_rule =
+      json.is(Type::object) && json.members.size() == 1 && !find_constructor(json.members[0].key);
+  return is_rule ? rule(place, {&components}) : constant_value(place, components);
+}
+
+Fractions RuleReader::constant_value(const JsonPlace& place, size_t& components) {
+  std::vector<Field> fields;
+  if (place.value->is(Type::array)) {
+    for (size_t i = 0; i < place.value->elements.size(); ++i) {
+      fields.push_back(field_or_number(place.element(i)));
+    }
+    if (fields.empty()) {
+      wrong_type(place, "a list of at least one number or field");
+      return {};
+    }
+  } else {
+    fields.push_back(field_or_number(place));
+  }
+  for (const Field& f : fields) {
+    if (!f) return {};
+  }
+  if (components == 0) components = fields.size();
+  if (components != fields.size()) {
+    error(place, "found " + std::to_string(fields.size()) + " components where others have " +
+                     std::to_string(components));
+    return {};
+  }
+  return Fractions::value(std::move(fields));
+}
+
+Fractions RuleReader::nested(const JsonPlace& place, Wanted wanted) {
+  return wanted.components ? value(place, *wanted.components) : fractions(place);
+}
+
+Fractions RuleReader::rule(const JsonPlace& place, Wanted wanted) {
+  const JsonValue& json = *place.value;
+  if (json.members.size() != 1) {
+    error(place, "found an object with " + std::to_string(json.members.size()) +
+                     " keys; a rule is an object with one, its name");
+    return {};
+  }
+  const JsonMember& member = json.members[0];
+  const RuleType* type = find_fraction_rule(member.key);
+  if (!type || type->use == wanted.other() || type->name == "value") {
+    std::vector<std::string> names;
+    for (const RuleType& known : fraction_rules()) {
+      if (known.use != wanted.other() && known.name != "value") names.push_back(known.name);
+    }
+    std::string message =
+        "there is no rule '" + member.key + "' here" + did_you_mean(member.key, names);
+    if (message.back() != '?') {
+      message += "; accepted are";
+      for (const std::string& name : names) message += (&name == &names[0] ? " " : ", ") + name;
+    }
+    error_at_key(place, member, message);
+    return {};
+  }
+  const JsonPlace inside = place.member(member);
+  std::optional<std::vector<RuleValue>> values;
+  if (is_whole(*type)) {
+    RuleValue whole = rule_value(inside, type->parameters[0], wanted, {});
+    if (whole.index() == 0) return {};
+    if (wanted.components && *wanted.components == 0) *wanted.components = 1;
+    values = {std::move(whole)};
+  } else {
+    values = rule_values(inside, type->name, type->parameters, wanted);
+  }
+  if (!values) return {};
+  return guarded(inside, [&] { return make_fractions(type->name, std::move(*values)); })
+      .value_or(Fractions());
+}
+
+std::optional<std::vector<RuleValue>> RuleReader::rule_values(
+    const JsonPlace& place, const std::string& owner, const std::vector<RuleParameter>& infos,
+    Wanted wanted) {
+  if (!object(place, "an object of the parameters of " + owner)) return std::nullopt;
+  std::vector<std::string> accepted;
+  for (const RuleParameter& p : infos) {
+    for (const std::string& key : keys_of(p, wanted.components)) accepted.push_back(key);
+  }
+  const size_t before = errors.size();
+  check_keys(place, accepted);
+  std::vector<RuleValue> values;
+  Field feature;
+  for (const RuleParameter& p : infos) {
+    std::optional<JsonPlace> given;
+    std::string named;
+    for (const std::string& key : keys_of(p, wanted.components)) {
+      const auto found = place.find(key);
+      if (found && given) error(*found, "give either 'material' or 'fractions', not both");
+      if (found) given = found;
+      named += (named.empty() ? "'" : " or '") + key + "'";
+    }
+    if (!given) {
+      if (p.required) error(place, owner + " needs " + named + ": " + p.doc);
+      values.push_back(p.default_value);
+      continue;
+    }
+    values.push_back(rule_value(*given, p, wanted, feature));
+    if (p.type == RuleParameterType::feature && values.back().index() != 0) {
+      feature = std::get<Field>(values.back());
+    }
+  }
+  // A part that is wrong without an error of its own names something that is wrong elsewhere.
+  for (size_t i = 0; i < infos.size(); ++i) {
+    if (infos[i].required && values[i].index() == 0) return std::nullopt;
+  }
+  return errors.size() == before ? std::optional(std::move(values)) : std::nullopt;
+}
+
+RuleValue RuleReader::rule_value(const JsonPlace& place, const RuleParameter& parameter,
+                                 Wanted wanted, const Field& feature) {
+  const auto as_value = [](auto read) { return read ? RuleValue(std::move(read)) : RuleValue(); };
+  switch (parameter.type) {
+    case RuleParameterType::number: {
+      const auto read = number(place, parameter.name, parameter.range);
+      return read ? RuleValue(*read) : RuleValue();
+    }
+    case RuleParameterType::field:
+    case RuleParameterType::feature:
+      return as_value(field(place));
+    case RuleParameterType::influence: {
+      // Without its feature, which is reported, u has no meaning.
+      if (!feature) return {};
+      return as_value(field_with(place, "u", formula_field(feature_distance(feature), "u", {})));
+    }
+    case RuleParameterType::fractions:
+      return as_value(nested(place, wanted));
+    case RuleParameterType::shares:
+      return material_members(place, true);
+    case RuleParameterType::functions:
+      return material_members(place, false);
+    case RuleParameterType::records:
+      return records(place, parameter, wanted);
+    case RuleParameterType::values:
+      break;
+  }
+  return {};
+}
+
+RuleValue RuleReader::records(const JsonPlace& place, const RuleParameter& parameter,
+                              Wanted wanted) {
+  if (!list(place, "a list of objects")) return {};
+  std::vector<Record> all;
+  for (size_t i = 0; i < place.value->elements.size(); ++i) {
+    auto values = rule_values(place.element(i),
+                              "element " + std::to_string(i + 1) + " of '" + parameter.name + "'",
+                              parameter.record, wanted);
+    if (values) all.push_back({std::move(*values)});
+  }
+  if (all.size() != place.value->elements.size()) return {};
+  return all;
+}
+
+RuleValue RuleReader::material_members(const JsonPlace& place, bool shares) {
+  const char* what = shares ? "a number" : "a field or a number";
+  if (!object(place, std::string("an object with ") + what + " for each material")) return {};
+  const size_t before = errors.size();
+  Shares numbers;
+  MaterialFunctions functions;
+  bool good = true;
+  for (const JsonMember& member : place.value->members) {
+    check_material(member.key, nullptr, &place, &member);
+    const JsonPlace inside = place.member(member);
+    if (shares) {
+      const auto read = number(inside, "the share");
+      if (read) numbers.push_back({member.key, *read});
+    } else {
+      functions.push_back({member.key, field_or_number(inside)});
+      good = good && functions.back().second;
+    }
+  }
+  if (errors.size() != before || !good) return {};
+  if (shares) return numbers;
+  return functions;
+}
+
+}  // namespace sardf

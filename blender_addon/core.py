@@ -40,10 +40,12 @@ def load():
         reason = _reason_against(folder)
         if reason:
             reasons.append(reason)
-        elif folder is None:
-            return importlib.import_module("sardf")
-        else:
-            return _load_from(folder)
+            continue
+        try:
+            return importlib.import_module("sardf") if folder is None else _load_from(folder)
+        except ImportError as error:  # a missing or older shared library of the system
+            place = "Blender's Python" if folder is None else folder
+            raise MissingCore(f"the module 'sardf' in {place} does not load: {error}") from error
     raise MissingCore(
         f"the Python module 'sardf' built for {python_tag()} (this is Python "
         f"{sys.version_info.major}.{sys.version_info.minor}) was not found: {'; '.join(reasons)}; "

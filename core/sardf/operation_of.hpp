@@ -10,7 +10,10 @@
 //   static constexpr std::array<int, arity> monotone;   sign of each partial derivative everywhere
 //   double gain(Interval, ...) const;              bound of the sum of |partials|
 //   double blend_error() const;                    bound of |this - its min/max counterpart|
-//   static constexpr double rounding = 16;         rounding error, in ulps of the largest magnitude
+//   static constexpr double rounding = 16;         rounding error, in ulps of the largest
+//   magnitude:
+//     of parameters and result and, for a distance, of arguments
+//   static constexpr bool cancels = true;          for a monotone one: of arguments, too
 #pragma once
 
 #include <algorithm>
@@ -139,12 +142,17 @@ class OperationOf final : public Operation {
  private:
   static double times(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
 
-  double rounding_error(const double* at, double result) const {
-    double magnitude = std::max(magnitude_, std::abs(result));
-    for (int k = 0; k < arity; ++k) magnitude = std::max(magnitude, std::abs(at[k]));
+  // Bound of the rounding error of `result`, a value for arguments up to `magnitude`.
+  double rounding_error(double magnitude, double result) const {
     double ulps = 16;
     if constexpr (requires { Op::rounding; }) ulps = Op::rounding;
-    return magnitude * ulps * 0x1p-52;
+    return ulps == 0 ? 0 : max(max(magnitude_, std::abs(result)), magnitude) * ulps * 0x1p-52;
+  }
+
+  static double largest(const Interval* in) {
+    double magnitude = 0;
+    for (int k = 0; k < arity; ++k) magnitude = max(magnitude, in[k].magnitude());
+    return magnitude;
   }
 
   Interval at_end_points(const Interval* in) const {
@@ -156,8 +164,11 @@ class OperationOf final : public Operation {
       }
       const double lo = apply(op_, low.data()), hi = apply(op_, high.data());
       // An infinite end can make the formula inf - inf: nothing is known there.
-      return {std::isnan(lo) ? -infinity : rounded_down(lo - rounding_error(low.data(), lo)),
-              std::isnan(hi) ? infinity : rounded_up(hi + rounding_error(high.data(), hi))};
+      double magnitude = 0;
+      if constexpr (requires { Op::cancels; }) magnitude = largest(in);
+      const double below = rounding_error(magnitude, lo), above = rounding_error(magnitude, hi);
+      return {std::isnan(lo) || below == infinity ? -infinity : rounded_down(lo - below),
+              std::isnan(hi) || above == infinity ? infinity : rounded_up(hi + above)};
     }
     return Interval::all();
   }
@@ -171,7 +182,7 @@ class OperationOf final : public Operation {
       squared += half * half;
     }
     const double f = apply(op_, centre.data());
-    const double radius = std::sqrt(squared) * (1 + 8 * 0x1p-52) + rounding_error(centre.data(), f);
+    const double radius = std::sqrt(squared) * (1 + 8 * 0x1p-52) + rounding_error(largest(in), f);
     if (!(radius < infinity) || std::isnan(f)) return Interval::all();
     return {rounded_down(f - radius), rounded_up(f + radius)};
   }

@@ -82,6 +82,7 @@ struct MinMax {
 struct RFunction {
   static constexpr const char *name = "r_function",
                               *doc = "x + y - sqrt(x² + y²): smooth off the edge, no distance.";
+  static constexpr bool cancels = true;
   template <class V>
   static void parameters(V&) {}
   double blend_error() const { return infinity; }

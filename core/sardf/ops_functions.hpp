@@ -9,7 +9,8 @@ struct SquareRoot : Function<1> {
   static constexpr const char *name = "sqrt", *doc = "the square root of a; 0 for negative a";
   template <class T>
   T eval(T a) const {
-    return sqrt(max(a, T(0.0)));
+    // The select keeps the derivative at and below 0 from being 0 times infinity.
+    return select(a > T(0.0), sqrt(max(a, T(0.0))), T(0.0));
   }
 };
 

@@ -102,11 +102,13 @@ Interval tan(Interval a) {
 
 Interval asin(Interval a) {
   const Interval c = intersect(a, {-1, 1});
+  if (c.lo > c.hi) return Interval::all();
   return widened(std::asin(c.lo), std::asin(c.hi));
 }
 
 Interval acos(Interval a) {
   const Interval c = intersect(a, {-1, 1});
+  if (c.lo > c.hi) return Interval::all();
   return widened(std::acos(c.hi), std::acos(c.lo));
 }
 

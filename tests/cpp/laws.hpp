@@ -138,15 +138,17 @@ OperationPointer random_operation(Random& r) {
   });
 }
 
-/// law(Op's type, an operation, Random&), `count` times for every operation of the list.
+/// law(Op's type, an operation, Random&), `count` times for every operation of the list, with new
+/// parameters every 20 times.
 template <class Law>
 void for_operations(int count, Law law) {
   uint64_t stream = 0;
   Ops::for_each([&]<class Op>(std::type_identity<Op> type) {
     Random r(++stream);
     SCOPED_TRACE("operation " + std::string(Op::name) + ", seed " + std::to_string(seed()));
+    OperationPointer op;
     for (int i = 0; i < count && !testing::Test::HasFatalFailure(); ++i) {
-      const OperationPointer op = random_operation<Op>(r);
+      if (i % 20 == 0) op = random_operation<Op>(r);
       law(type, *op, r);
     }
   });

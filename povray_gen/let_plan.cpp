@@ -27,7 +27,7 @@ LetPlan::LetPlan(const Terms& terms, int root, Simple simple)
   for (auto* list : {&children_, &height_, &tallest_}) list->assign(nodes, 0);
   scopes_.resize(nodes);
   repeated_.assign(nodes, false);
-  if (simple == Simple::repeat) find_repeated_terms();
+  find_repeated_terms(simple);
   bind_shared_terms();
   for (int term = 0; term <= root; ++term) {
     if (!dominators_.is_reached(term)) continue;
@@ -49,17 +49,24 @@ void LetPlan::bind_shared_terms() {
   most_height_ = std::max(readable_height, depth[root_] / most_pieces);
 }
 
-void LetPlan::find_repeated_terms() {
+void LetPlan::find_repeated_terms(Simple simple) {
   std::vector<int> operators(size_t(root_) + 1, 0);
   for (int term = 0; term < root_; ++term) {
     if (!terms_[term].is_operator()) continue;
-    bool simple = true;
+    const std::vector<int>& operands = terms_[term].operands;
+    if (operands.size() == 1) {
+      // A value's negative costs no more than the value.
+      repeated_[term] = terms_[operands[0]].is_leaf() || dominators_.uses(operands[0]) > 1;
+    }
+    if (simple == Simple::bind) continue;
+    bool of_inputs = true;
     operators[term] = 1;
-    for (int operand : terms_[term].operands) {
-      simple = simple && (terms_[operand].is_leaf() || repeated_[operand]);
+    for (int operand : operands) {
+      of_inputs = of_inputs && (terms_[operand].is_leaf() || operators[operand] > 0);
       operators[term] += operators[operand];
     }
-    repeated_[term] = simple && operators[term] <= repeated_operators;
+    if (!of_inputs || operators[term] > repeated_operators) operators[term] = 0;
+    if (operators[term] > 0) repeated_[term] = true;
   }
 }
 

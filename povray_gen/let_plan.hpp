@@ -28,7 +28,7 @@ class LetPlan {
  public:
   /// What to do with a few shared operators on inputs and numbers, such as 0.5 * (x - 3).
   enum class Simple {
-    bind,    // as with all shared terms
+    bind,    // as with all shared terms but negatives of values
     repeat,  // write them again: they cost little more than passing them, and take no parameter
   };
   /// Throws Error if more values than a function can have are needed at once.
@@ -45,7 +45,7 @@ class LetPlan {
 
  private:
   void bind_shared_terms();
-  void find_repeated_terms();
+  void find_repeated_terms(Simple simple);
   void process(int node);
   int text_height(int node) const;
   void limit_height(int node);

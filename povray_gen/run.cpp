@@ -63,7 +63,7 @@ std::vector<std::string> command(const std::string& scene, const std::string& im
   out.insert(out.end(), {format, "-D"});
   if (options.alpha) out.push_back("+UA");
   if (options.antialias) {
-    out.insert(out.end(), {"+A0.05", "+AM2", "+R3", "-J"});
+    out.insert(out.end(), {"+A0.1", "+AM2", "+R2", "-J"});
   } else {
     out.push_back("-A");
   }
@@ -118,6 +118,8 @@ void render(const std::string& scene, const std::string& image, const RunOptions
   name.append(target.stem().string()).append(".").append(std::to_string(::getpid()));
   name.append(extension_of(options.format));
   const Remover temporary{source.parent_path() / name};
+  // What POV-Ray would continue an interrupted render from.
+  const Remover state{fs::path(temporary.path).replace_extension(".pov-state")};
   const ProcessResult result =
       run_process(command(source.filename().string(), name, options),
                   {source.parent_path().string(), options.timeout, options.progress});

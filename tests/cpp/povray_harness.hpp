@@ -54,17 +54,16 @@ inline std::vector<double> evaluate_in_povray(const std::string& declarations,
   }
   scene << "#fclose OUT\nbackground { rgb 0 } sphere { 0, 1 }\n";
   scene.close();
-  const ProcessResult result =
-      run_process({povray::find_povray(), "+I./scene.pov", "+O./out.png", "+W1", "+H1", "-D",
-                   "+WT1", "-A"},
-                  {.folder = folder / ""});
+  const ProcessResult result = run_process(
+      {povray::find_povray(), "+I./scene.pov", "+O./out.png", "+W1", "+H1", "-D", "+WT1", "-A"},
+      {.folder = folder / ""});
   if (messages) *messages = result.errors;
   std::vector<double> out;
   std::ifstream values(folder / "values.txt");
   for (std::string line; std::getline(values, line);) out.push_back(std::stod(line));
   if (out.size() != calls.size()) {
-    ADD_FAILURE() << "POV-Ray gave " << out.size() << " of " << calls.size() << " values: "
-                  << povray::complaint_in(result.errors);
+    ADD_FAILURE() << "POV-Ray gave " << out.size() << " of " << calls.size()
+                  << " values: " << povray::complaint_in(result.errors);
     out.resize(calls.size(), 0);
   }
   return out;

@@ -1,0 +1,236 @@
+#include "povray_gen/scene_text.hpp"
+
+#include "povray_gen/vector_text.hpp"
+#include "sardf/certify.hpp"
+#include "sardf/error.hpp"
+
+namespace sardf::povray {
+
+namespace {
+
+// Positions are found, and POV-Ray's own normals differenced, to this share of the diagonal.
+constexpr double accuracy = 1e-5;
+// Half the step of our central differences: rounding and curvature both stay below 1e-9.
+constexpr double normal_step = 1e-5;
+constexpr int lipschitz_boxes = 1024;
+constexpr double gradient_margin = 1.02;
+
+// The identifiers that users meet, reserved before any field takes one.
+struct Identifiers {
+  explicit Identifiers(Names& names)
+      : guard(names.unique("inc")),
+        csg(names.unique("csg")),
+        isosurface(names.unique("isosurface")),
+        pigment(names.unique("pigment")),
+        normal_pigment(names.unique("normal_pigment")),
+        texture(names.unique("texture")),
+        object(names.unique("object")) {}
+  std::string guard, csg, isosurface, pigment, normal_pigment, texture, object;
+};
+
+struct Gradient {
+  double bound = 0;
+  bool proven = true;
+};
+
+Gradient gradient_of(const PovrayScene& scene) {
+  const CertifiedBound bound =
+      certified_lipschitz(Evaluator(scene.solid), scene.bounds, lipschitz_boxes);
+  const std::optional<double>& stated = scene.stated_lipschitz;
+  if (stated && !(bound.value <= *stated)) return {*stated, false};
+  if (bound.value < infinity) return {bound.value, true};
+  throw Error("POV-Ray needs a bound of the solid's gradient, and '" + bound.infinite_at +
+              "' has none; rewrite it, or state one: \"lipschitz\": L");
+}
+
+void check_bounds(const BoundingBox& bounds) {
+  for (int i = 0; i < 3; ++i) {
+    const double size = bounds.hi[i] - bounds.lo[i];
+    if (!(size > 0 && size < infinity)) {
+      throw Error("POV-Ray needs a bounded solid; its bounds have the size " +
+                  std::to_string(size) + " along " + "xyz"[i]);
+    }
+  }
+}
+
+std::string one_line(std::string text) {
+  for (char& c : text) {
+    if (c == '\n' || c == '\r') c = ' ';
+  }
+  return text;
+}
+
+// A pigment of three functions. POV-Ray 3.7 has none, but the average of three pigments that are
+// pure red, green and blue, three times as bright. Values just beyond [0, 1] would wrap around.
+std::string three_function_pigment(const std::string& name,
+                                   const std::array<std::string, 3>& functions) {
+  constexpr const char* ends[] = {"<3, 0, 0>", "<0, 3, 0>", "<0, 0, 3>"};
+  std::string out = "#declare " + name + " = pigment {\n  average pigment_map {\n";
+  for (int i = 0; i < 3; ++i) {
+    out += filled(
+        "    [1 function { min(1, max(0, {}(x, y, z))) } color_map { [0 rgb 0] [1 rgb {}] }]\n",
+        {functions[i], ends[i]});
+  }
+  return out + "  }\n}\n";
+}
+
+std::string color_pigment(const PovrayScene& scene, const std::string& name,
+                          FunctionWriter& writer) {
+  const std::array<Expression, 3>& color = scene.color;
+  Vec3 even{0.8, 0.8, 0.8};
+  bool is_even = true;
+  for (int i = 0; i < 3; ++i) {
+    if (!color[i]) continue;
+    is_even = is_even && is_constant(color[i]);
+    even[i] = color[i]->value;
+  }
+  if (is_even) return "#declare " + name + " = pigment { rgb " + vector_text(even) + " }\n";
+  const std::vector<std::string> functions = writer.declare(
+      std::vector<NamedExpression>{{"red", color[0]}, {"green", color[1]}, {"blue", color[2]}});
+  return three_function_pigment(name, {functions[0], functions[1], functions[2]});
+}
+
+// The function decreases outwards: central differences, backward minus forward, point outwards.
+std::string normal_pigment(const std::string& name, const std::string& function, double step,
+                           Names& names) {
+  const std::string h = number_text(step);
+  constexpr const char* axes[] = {"x", "y", "z"};
+  constexpr const char* shifted[] = {"{}(x - {}, y, z) - {}(x + {}, y, z)",
+                                     "{}(x, y - {}, z) - {}(x, y + {}, z)",
+                                     "{}(x, y, z - {}) - {}(x, y, z + {})"};
+  std::array<std::string, 3> slopes, colors;
+  std::string out;
+  for (int i = 0; i < 3; ++i) {
+    slopes[i] = names.unique(std::string("slope_").append(axes[i]));
+    out += "#declare " + slopes[i] + " = function(x, y, z) {\n  " +
+           filled(shifted[i], {function, h, function, h}) + "\n}\n";
+  }
+  const std::string unit = names.unique("unit");
+  const std::string a = names.parameter(0), b = names.parameter(1), c = names.parameter(2);
+  out += filled(
+      "#declare {} = function({}, {}, {}) {\n"
+      "  0.5 + 0.5 * {} / sqrt(max({} * {} + {} * {} + {} * {}, 1e-300))\n}\n",
+      {unit, a, b, c, a, a, a, b, b, c, c});
+  for (int i = 0; i < 3; ++i) {
+    colors[i] = names.unique(std::string("normal_").append(axes[i]));
+    // The component in question comes first; the others only count towards the length.
+    out += filled(
+        "#declare {} = function(x, y, z) {\n  {}({}(x, y, z), {}(x, y, z), {}(x, y, z))\n}\n",
+        {colors[i], unit, slopes[i], slopes[(i + 1) % 3], slopes[(i + 2) % 3]});
+  }
+  return out + three_function_pigment(name, colors);
+}
+
+std::string isosurface_text(const PovrayScene& scene, const Identifiers& ids,
+                            const std::string& solid, const Gradient& gradient) {
+  // POV-Ray's inside is where the function is negative. A macro, because copies of a declared
+  // isosurface do not report a max_gradient that is too small.
+  return filled(
+      "#macro {}()\n  isosurface {\n"
+      "    function { -({}(x, y, z)) }\n"
+      "    contained_by { box { {}, {} } }\n"
+      "    accuracy {}\n"
+      "    max_gradient {} // 1.02 x the bound of the gradient, {}\n"
+      "    #if ({}) all_intersections #end\n  }\n#end\n",
+      {ids.isosurface, solid, vector_text(scene.bounds.lo), vector_text(scene.bounds.hi),
+       number_text(accuracy * scene.bounds.diagonal()),
+       number_text(gradient_margin * gradient.bound),
+       gradient.proven ? "proven" : "stated by the scene, not proven", ids.csg});
+}
+
+std::string include_text(const PovrayScene& scene, Names& names, const Identifiers& ids,
+                         const Gradient& gradient) {
+  FunctionWriter writer(names);
+  std::vector<NamedExpression> all(scene.fields);
+  all.push_back({"solid", scene.solid});
+  const std::string solid = writer.declare(all).back();
+  const std::string pigment = color_pigment(scene, ids.pigment, writer);
+  const double step = normal_step * scene.bounds.diagonal();
+  std::string out = filled(
+      "// {}\n"
+      "//\n"
+      "// object { {} } is the solid in its colours. {}() is the solid alone\n"
+      "// and {} its colours, for a texture of your own. Fields are functions of x, y, z,\n"
+      "// positive inside.\n"
+      "//\n"
+      "// To use it in difference, intersection, merge or clipped_by, write\n"
+      "//   #declare {} = yes;\n"
+      "// before including this file, so that all intersections are found (at most 10 on a ray), "
+      "and\n"
+      "// give the texture to the outermost object: a cut face has that one's texture, or none.\n"
+      "#ifndef ({})\n#declare {} = version;\n#version 3.7;\n"
+      "#ifndef ({}) #declare {} = no; #end\n\n",
+      {one_line(scene.title), ids.object, ids.isosurface, ids.pigment, ids.csg, ids.guard,
+       ids.guard, ids.csg, ids.csg});
+  out += writer.text() + "\n" + isosurface_text(scene, ids, solid, gradient) + pigment +
+         normal_pigment(ids.normal_pigment, solid, step, names);
+  out += filled(
+      "#declare {} = texture {\n  pigment { {} }\n"
+      "  finish { ambient 0.1 diffuse 0.8 specular 0.15 roughness 0.03 }\n}\n"
+      "#declare {} = object { {}() texture { {} } }\n\n"
+      "#version {};\n#end\n",
+      {ids.texture, ids.pigment, ids.object, ids.isosurface, ids.texture, ids.guard});
+  return out;
+}
+
+// A large soft key light over the camera's left shoulder, a weak fill from its right and one from
+// below behind, both without shadows and highlights.
+std::string lights_text(const PovrayScene& scene) {
+  const View view = view_of(scene.camera, scene.width, scene.height);
+  const Vec3 right = normalized(view.right), up = normalized(view.up);
+  const Vec3 back = -1.0 * normalized(view.direction);
+  const double size = scene.bounds.diagonal();
+  const Vec3 center = scene.bounds.center();
+  const auto at = [&](double r, double u, double b) {
+    return vector_text(center + 3 * size * (r * right + u * up + b * back));
+  };
+  return filled(
+      "light_source {\n  {}, rgb 0.95\n"
+      "  area_light {}, {}, 3, 3 adaptive 0 circular orient\n}\n"
+      "light_source { {}, rgb 0.3 shadowless }\n"
+      "light_source { {}, rgb 0.2 shadowless }\n",
+      {at(-0.6, 0.9, 0.8), vector_text(0.6 * size * right), vector_text(0.6 * size * up),
+       at(1, 0.1, 0.6), at(0.2, -0.7, -0.5)});
+}
+
+}  // namespace
+
+std::string camera_text(const Camera& camera, int width, int height) {
+  const View view = view_of(camera, width, height);
+  return filled("camera {\n{}  location {}\n  right {}\n  up {}\n  direction {}\n}\n",
+                {camera.type == Camera::Type::orthographic ? "  orthographic\n" : "",
+                 vector_text(view.location), vector_text(view.right), vector_text(view.up),
+                 vector_text(view.direction)});
+}
+
+SceneText scene_text(const PovrayScene& scene, const std::string& include_name) {
+  check_bounds(scene.bounds);
+  if (include_name.find('"') != std::string::npos) {
+    throw Error("POV-Ray cannot include a file whose name has a quotation mark", include_name);
+  }
+  const Gradient gradient = gradient_of(scene);
+  Names names(scene.title);
+  const Identifiers ids(names);
+  SceneText out;
+  out.prefix = names.prefix();
+  out.max_gradient = gradient_margin * gradient.bound;
+  out.proven = gradient.proven;
+  out.include = include_text(scene, names, ids, gradient);
+  out.scene =
+      filled("// {}\n#version 3.7;\nglobal_settings { assumed_gamma 1.0 }\n#include \"{}\"\n\n",
+             {one_line(scene.title), include_name});
+  out.scene += camera_text(scene.camera, scene.width, scene.height);
+  if (scene.look == Look::shaded) {
+    out.scene += "background { rgb " + vector_text(scene.background) + " }\n" + lights_text(scene) +
+                 "object { " + ids.object + " }\n";
+  } else {
+    // Transparent: with +UA the picture's alpha is the mask of the object.
+    out.scene += filled(
+        "background { rgbt 1 }\nobject {\n  {}()\n  texture {\n    pigment { {} }\n"
+        "    finish { ambient 0 diffuse 0 emission 1 }\n  }\n}\n",
+        {ids.isosurface, scene.look == Look::flat ? ids.pigment : ids.normal_pigment});
+  }
+  return out;
+}
+
+}  // namespace sardf::povray

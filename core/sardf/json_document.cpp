@@ -174,36 +174,6 @@ class Builder {
 
 }  // namespace
 
-namespace {
-
-nlohmann::ordered_json to_json(const JsonValue& value) {
-  using Json = nlohmann::ordered_json;
-  switch (value.type) {
-    case JsonValue::Type::null:
-      return nullptr;
-    case JsonValue::Type::boolean:
-      return value.truth;
-    case JsonValue::Type::number:
-      return value.number;
-    case JsonValue::Type::string:
-      return value.text;
-    case JsonValue::Type::array: {
-      Json list = Json::array();
-      for (const JsonValue& element : value.elements) list.push_back(to_json(element));
-      return list;
-    }
-    default: {
-      Json object = Json::object();
-      for (const JsonMember& member : value.members) object[member.key] = to_json(member.value);
-      return object;
-    }
-  }
-}
-
-}  // namespace
-
-std::string json_text(const JsonValue& value) { return to_json(value).dump(); }
-
 const JsonValue* JsonValue::find(const std::string& key) const {
   for (const JsonMember& member : members) {
     if (member.key == key) return &member.value;

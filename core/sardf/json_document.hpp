@@ -20,6 +20,15 @@ struct JsonValue {
   std::vector<JsonMember> members;  // in the order of the text
   int line = 0;                     // where the value starts
 
+  static JsonValue of(double number);
+  static JsonValue of(bool truth);
+  static JsonValue of(std::string text);
+  static JsonValue list();
+  static JsonValue object();
+  /// Adds to an object, or to a list.
+  void add(const std::string& key, JsonValue value);
+  void add(JsonValue value);
+
   bool is(Type t) const { return type == t; }
   /// nullptr when there is none.
   const JsonValue* find(const std::string& key) const;
@@ -34,8 +43,10 @@ struct JsonMember {
 /// "a number", "an object", ...
 std::string json_type_name(const JsonValue& value);
 
-/// The value as JSON text on one line.
+/// The value as JSON text on one line. Numbers have as many digits as they need.
 std::string json_text(const JsonValue& value);
+/// The value as JSON text on lines of up to `width` characters where that is possible.
+std::string pretty_json(const JsonValue& value, size_t width = 100);
 
 /// A JSON pointer with one more step; `key` is escaped.
 std::string pointer_to(const std::string& pointer, const std::string& key);

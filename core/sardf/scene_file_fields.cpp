@@ -10,6 +10,19 @@ namespace {
 
 using Type = JsonValue::Type;
 
+// {"boundary": "bore"} is short for {"boundary": {"solid": "bore"}}, and {"union": ["a", "b"]} for
+// {"union": {"of": ["a", "b"]}}: the parameters that are meant, or an object without members.
+JsonValue as_parameters(const Constructor& constructor, const JsonValue& value) {
+  JsonValue object = JsonValue::object();
+  object.line = value.line;
+  if (constructor.parameters.empty()) return object;
+  const ParameterInfo& first = constructor.parameters[0];
+  const bool short_form = (first.type == ParameterType::field && value.is(Type::string)) ||
+                          (first.type == ParameterType::fields && value.is(Type::array));
+  if (short_form) object.add(first.name, value);
+  return object;
+}
+
 // Every name that a field's text or object mentions, known or not.
 void collect_names(const JsonValue& value, std::vector<std::string>& names) {
   if (value.is(Type::string)) {
@@ -25,8 +38,10 @@ void collect_names(const JsonValue& value, std::vector<std::string>& names) {
   if (!value.is(Type::object) || value.members.size() != 1) return;
   const Constructor* constructor = find_constructor(value.members[0].key);
   if (!constructor) return;
+  const JsonValue short_form = as_parameters(*constructor, value.members[0].value);
+  const JsonValue& given = short_form.members.empty() ? value.members[0].value : short_form;
   for (const ParameterInfo& info : constructor->parameters) {
-    const JsonValue* argument = value.members[0].value.find(info.name);
+    const JsonValue* argument = given.find(info.name);
     if (!argument) continue;
     if (info.type == ParameterType::field) collect_names(*argument, names);
     if (info.type == ParameterType::fields) {
@@ -219,9 +234,16 @@ Field FieldReader::constructed_field(const JsonPlace& place) {
     return {};
   }
   const JsonPlace inside = place.member(member);
-  auto given = arguments(inside, constructor->name, constructor->parameters);
+  if (const JsonValue object = as_parameters(*constructor, member.value); !object.members.empty()) {
+    return construct({&object, inside.pointer}, *constructor);
+  }
+  return construct(inside, *constructor);
+}
+
+Field FieldReader::construct(const JsonPlace& inside, const Constructor& constructor) {
+  auto given = arguments(inside, constructor.name, constructor.parameters);
   if (!given) return {};
-  return guarded(inside, [&] { return make_field(*constructor, std::move(*given)); })
+  return guarded(inside, [&] { return make_field(constructor, std::move(*given)); })
       .value_or(Field());
 }
 

@@ -39,6 +39,7 @@ class FieldReader : public ValueReader {
   Field formula(const JsonPlace& place);
   Field by_name(const JsonPlace& place);
   Field constructed_field(const JsonPlace& place);
+  Field construct(const JsonPlace& parameters_at, const Constructor& constructor);
 
   std::map<std::string, Field> known_;
   std::map<std::string, Field> given_;

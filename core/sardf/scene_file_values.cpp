@@ -48,6 +48,19 @@ constexpr const char* accepted_number = "a number or a formula \"=...\"";
 
 }  // namespace
 
+std::string hex_color(const Vec3& linear) {
+  std::string text = "#";
+  for (const double c : linear) {
+    int level = 0;
+    while (level < 255 && linear_from_srgb(level / 255.0) < c) ++level;
+    if (linear_from_srgb(level / 255.0) != c) return "";
+    char digits[3];
+    std::snprintf(digits, sizeof digits, "%02x", static_cast<unsigned>(level) & 255u);
+    text += digits;
+  }
+  return text;
+}
+
 std::optional<JsonPlace> JsonPlace::find(const std::string& key) const {
   const JsonValue* found_value = value->find(key);
   if (!found_value) return std::nullopt;

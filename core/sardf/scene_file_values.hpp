@@ -12,6 +12,9 @@
 
 namespace sardf {
 
+/// "#rrggbb" for a linear colour that is one of these 16 million to the last bit, else "".
+std::string hex_color(const Vec3& linear);
+
 /// A value and where it stands.
 struct JsonPlace {
   const JsonValue* value;

@@ -1,0 +1,142 @@
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "sardf/json_document.hpp"
+
+namespace sardf {
+
+namespace {
+
+using Type = JsonValue::Type;
+
+std::string quoted(const std::string& text) {
+  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+std::string number_text(double a) {
+  char text[40];
+  const auto end = std::to_chars(text, text + sizeof text, a).ptr;
+  return std::string(text, end);
+}
+
+void print(const JsonValue& value, std::string& to);
+
+void print_list(const JsonValue& value, std::string& to) {
+  to += '[';
+  for (size_t i = 0; i < value.elements.size(); ++i) {
+    if (i) to += ", ";
+    print(value.elements[i], to);
+  }
+  to += ']';
+}
+
+void print_object(const JsonValue& value, std::string& to) {
+  to += '{';
+  for (size_t i = 0; i < value.members.size(); ++i) {
+    if (i) to += ", ";
+    to += quoted(value.members[i].key) + ": ";
+    print(value.members[i].value, to);
+  }
+  to += '}';
+}
+
+void print(const JsonValue& value, std::string& to) {
+  switch (value.type) {
+    case Type::null:
+      to += "null";
+      break;
+    case Type::boolean:
+      to += value.truth ? "true" : "false";
+      break;
+    case Type::number:
+      to += number_text(value.number);
+      break;
+    case Type::string:
+      to += quoted(value.text);
+      break;
+    case Type::array:
+      print_list(value, to);
+      break;
+    case Type::object:
+      print_object(value, to);
+      break;
+  }
+}
+
+// `used`: characters that stand before the value on its line, and after it.
+void print_lines(const JsonValue& value, size_t indent, size_t used, size_t width,
+                 std::string& to) {
+  std::string line;
+  print(value, line);
+  const bool is_object = value.is(Type::object);
+  const size_t n = is_object ? value.members.size() : value.elements.size();
+  if (used + line.size() <= width || n == 0) {
+    to += line;
+    return;
+  }
+  const std::string inner(indent + 2, ' ');
+  to += is_object ? "{\n" : "[\n";
+  for (size_t i = 0; i < n; ++i) {
+    const std::string key = is_object ? quoted(value.members[i].key) + ": " : "";
+    to += inner + key;
+    print_lines(is_object ? value.members[i].value : value.elements[i], indent + 2,
+                inner.size() + key.size() + 1, width, to);
+    to += i + 1 < n ? ",\n" : "\n";
+  }
+  to += std::string(indent, ' ') + (is_object ? "}" : "]");
+}
+
+}  // namespace
+
+JsonValue JsonValue::of(double number) {
+  JsonValue value;
+  value.type = Type::number;
+  value.number = number;
+  return value;
+}
+
+JsonValue JsonValue::of(bool truth) {
+  JsonValue value;
+  value.type = Type::boolean;
+  value.truth = truth;
+  return value;
+}
+
+JsonValue JsonValue::of(std::string text) {
+  JsonValue value;
+  value.type = Type::string;
+  value.text = std::move(text);
+  return value;
+}
+
+JsonValue JsonValue::list() {
+  JsonValue value;
+  value.type = Type::array;
+  return value;
+}
+
+JsonValue JsonValue::object() {
+  JsonValue value;
+  value.type = Type::object;
+  return value;
+}
+
+void JsonValue::add(const std::string& key, JsonValue value) {
+  members.push_back({key, 0, std::move(value)});
+}
+
+void JsonValue::add(JsonValue value) { elements.push_back(std::move(value)); }
+
+std::string json_text(const JsonValue& value) {
+  std::string text;
+  print(value, text);
+  return text;
+}
+
+std::string pretty_json(const JsonValue& value, size_t width) {
+  std::string text;
+  print_lines(value, 0, 0, width, text);
+  return text + "\n";
+}
+
+}  // namespace sardf

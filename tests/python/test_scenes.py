@@ -1,0 +1,199 @@
+"""The shipped scenes in Python: bounds, fractions, meshes, bakes, round trip."""
+
+import json
+from pathlib import Path
+
+import manifold3d
+import numpy as np
+import pytest
+import trimesh
+
+import sardf
+
+ROOT = Path(__file__).resolve().parents[2]
+SCENES = sorted((ROOT / "scenes").glob("*.json"))
+RESOLUTION = 128
+# Euler characteristics counted by hand: 2 - 2 × (through holes) for each connected piece.
+EULER = {"two_ellipsoids": 2, "cad_pins": 2, "lined_bore": -4, "diamond_cutter": 2}
+
+
+@pytest.fixture(scope="module", params=SCENES, ids=lambda path: path.stem)
+def scene(request):
+    loaded = sardf.load(str(request.param))
+    loaded_name = request.param.stem
+    return loaded_name, loaded
+
+
+@pytest.fixture(scope="module")
+def surface(scene):
+    return scene[1].mesh(resolution=RESOLUTION)
+
+
+def triangles(mesh):
+    """Triangles of the quads, those of a repeated index left out."""
+    faces = mesh.faces
+    both = np.concatenate([faces[:, (0, 1, 2)], faces[:, (0, 2, 3)]])
+    return both[(both[:, 0] != both[:, 1]) & (both[:, 1] != both[:, 2]) & (both[:, 0] != both[:, 2])]
+
+
+def cell_of(scene):
+    low, high = np.array(scene.bounds[0]), np.array(scene.bounds[1])
+    return (high - low).max() / RESOLUTION
+
+
+def drawn(scene, points):
+    """The drawn solid at points: the solid, cut by the file's sections when it has any."""
+    return scene.drawn(points)
+
+
+def test_solid_is_empty_outside_its_bounds(scene):
+    low, high = (np.array(corner) for corner in scene[1].bounds)
+    points = np.random.default_rng(3).uniform(low - (high - low), high + (high - low), (20000, 3))
+    outside = np.any((points < low) | (points > high), axis=1)
+    assert scene[1].solid(points[outside]).max() < 0
+
+
+def test_fractions_are_a_partition_of_unity(scene):
+    low, high = (np.array(corner) for corner in scene[1].bounds)
+    points = np.random.default_rng(4).uniform(low, high, (5000, 3))
+    fractions = scene[1].fractions(points)
+    assert fractions.shape == (5000, len(scene[1].materials))
+    assert fractions.min() >= 0
+    np.testing.assert_allclose(fractions.sum(axis=1), 1, rtol=0, atol=1e-12)
+
+
+def test_outside_can_be_marked(scene):
+    low, high = (np.array(corner) for corner in scene[1].bounds)
+    points = np.random.default_rng(5).uniform(low, high, (2000, 3))
+    marked = np.isnan(scene[1].fractions(points, outside="nan")).any(axis=1)
+    np.testing.assert_array_equal(marked, scene[1].solid(points) < 0)
+
+
+def test_mesh_is_closed_and_manifold(scene, surface):
+    body = trimesh.Trimesh(surface.vertices, triangles(surface), process=False)
+    assert body.is_watertight
+    assert body.is_winding_consistent
+    assert body.volume > 0
+    solid = manifold3d.Manifold(
+        manifold3d.Mesh(
+            vert_properties=surface.vertices.astype(np.float32),
+            tri_verts=triangles(surface).astype(np.uint32),
+        )
+    )
+    assert solid.status() == manifold3d.Error.NoError
+
+
+def test_euler_characteristic(scene, surface):
+    name, loaded = scene
+    body = trimesh.Trimesh(surface.vertices, triangles(surface), process=False)
+    if name in EULER:
+        assert body.euler_number == EULER[name]
+    else:
+        finer = loaded.mesh(resolution=2 * RESOLUTION, size=0)
+        assert body.euler_number == trimesh.Trimesh(
+            finer.vertices, triangles(finer), process=False
+        ).euler_number
+
+
+def test_vertices_lie_on_the_surface(scene, surface):
+    _, loaded = scene
+    value, gradient = loaded.drawn(surface.vertices), loaded.drawn.gradient(surface.vertices)
+    steep = np.linalg.norm(gradient, axis=1)
+    known = steep > 0
+    distance = np.abs(value[known]) / steep[known]
+    assert known.mean() > 0.99
+    assert distance.max() <= 0.005 * cell_of(loaded)
+
+
+def test_volume_agrees_with_the_field(scene, surface):
+    """The mesh's volume against counting random points: an estimate that shares no code."""
+    _, loaded = scene
+    low, high = (np.array(corner) for corner in loaded.bounds)
+    points = np.random.default_rng(6).uniform(low, high, (400_000, 3))
+    share = (loaded.drawn(points) >= 0).mean()
+    spread = np.sqrt(share * (1 - share) / len(points))
+    body = trimesh.Trimesh(surface.vertices, triangles(surface), process=False)
+    assert body.volume / np.prod(high - low) == pytest.approx(share, abs=5 * spread + 1e-4)
+
+
+def test_atlas(scene, surface):
+    uv = surface.uv
+    assert uv.shape == (4 * len(surface.faces), 2)
+    assert uv.min() >= 0
+    assert uv.max() <= 1
+    corners = uv.reshape(-1, 4, 2)
+    area = 0.0
+    for a, b, c in ((0, 1, 2), (0, 2, 3)):
+        e, f = corners[:, b] - corners[:, a], corners[:, c] - corners[:, a]
+        signed = (e[:, 0] * f[:, 1] - e[:, 1] * f[:, 0]) / 2
+        assert signed.min() > -1e-9
+        area += signed.sum()
+    assert area >= 0.55
+
+
+def bilinear(image, uv):
+    """The bilinear lookup of an image, row 0 at the top, clamped at its border."""
+    height, width = image.shape[:2]
+    x = np.clip(uv[:, 0] * width - 0.5, 0, width - 1)
+    y = np.clip((1 - uv[:, 1]) * height - 0.5, 0, height - 1)
+    i, j = np.minimum(x.astype(int), width - 2), np.minimum(y.astype(int), height - 2)
+    s, t = (x - i)[:, None], (y - j)[:, None]
+    top = image[j, i] * (1 - s) + image[j, i + 1] * s
+    bottom = image[j + 1, i] * (1 - s) + image[j + 1, i + 1] * s
+    return top * (1 - t) + bottom * t
+
+
+def random_surface_points(surface, count, seed):
+    """Points, their texture coordinates: uniform over the triangles' areas."""
+    rng = np.random.default_rng(seed)
+    faces, uv = surface.faces, surface.uv.reshape(-1, 4, 2)
+    corners = surface.vertices[faces]
+    points = np.concatenate([corners[:, (0, 1, 2)], corners[:, (0, 2, 3)]])
+    coordinates = np.concatenate([uv[:, (0, 1, 2)], uv[:, (0, 2, 3)]])
+    area = np.linalg.norm(
+        np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]), axis=1
+    )
+    chosen = rng.choice(len(area), count, p=area / area.sum())
+    a, b = rng.random((2, count))
+    a, b = np.where(a + b > 1, 1 - a, a), np.where(a + b > 1, 1 - b, b)
+    weights = np.stack([1 - a - b, a, b], axis=1)[:, :, None]
+    return (points[chosen] * weights).sum(axis=1), (coordinates[chosen] * weights).sum(axis=1)
+
+
+def test_texture_lookup_is_the_volume(scene, surface):
+    """>= 10 000 points: a lookup of the 2048² texture against the exact path."""
+    name, loaded = scene
+    maps = loaded.bake(surface, size=2048, channels=("fractions",))
+    points, uv = random_surface_points(surface, 12_000, 8)
+    # The mesh's chords lie within a small part of a cell of the surface: the exact foot is found.
+    gradient = loaded.drawn.gradient(points)
+    squared = (gradient**2).sum(axis=1, keepdims=True)
+    points = points - loaded.drawn(points)[:, None] * gradient / np.where(squared > 0, squared, 1)
+    exact = loaded.fractions(points)
+    looked_up = np.concatenate([bilinear(maps[key], uv) for key in sorted(maps)], axis=1)
+    error = np.abs(looked_up[:, : exact.shape[1]] - exact).max(axis=1)
+    smooth = ~near_discontinuity(loaded, points, surface)
+    assert np.isfinite(looked_up).all()
+    assert smooth.mean() > 0.8, name
+    assert np.quantile(error[smooth], 0.99) <= 0.004
+
+
+def near_discontinuity(loaded, points, surface):
+    """Whether fractions jump within about one texel of a point: by much over a tiny step."""
+    area = trimesh.Trimesh(surface.vertices, triangles(surface), process=False).area
+    texel = np.sqrt(area / (0.55 * 2048**2))
+    jumps = np.zeros(len(points), dtype=bool)
+    for axis in range(3):
+        for side in (-1, 1):
+            near = points + side * 1.5 * texel * np.eye(3)[axis]
+            jumps |= np.abs(loaded.fractions(near) - loaded.fractions(points)).max(axis=1) > 0.2
+    return jumps
+
+
+def test_round_trip(scene):
+    _, loaded = scene
+    again = sardf.Scene.from_json(loaded.to_json())
+    points = np.random.default_rng(9).uniform(*np.array(loaded.bounds), (2000, 3))
+    np.testing.assert_array_equal(again.solid(points), loaded.solid(points))
+    np.testing.assert_array_equal(again.fractions(points), loaded.fractions(points))
+    assert json.loads(again.to_json()) == json.loads(loaded.to_json())

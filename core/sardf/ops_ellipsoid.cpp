@@ -1,5 +1,6 @@
 #include "sardf/ops_ellipsoid.hpp"
 
+#include <span>
 #include <string>
 
 namespace sardf {
@@ -7,13 +8,14 @@ namespace sardf {
 namespace {
 
 constexpr int most_steps = 64;
-// Distances from a coordinate plane, in radii, at which the steps are counted.
-constexpr double grades[] = {1e-18, 1e-12, 1e-8, 1e-5, 1e-3, 0.01, 0.03, 0.1,
-                             0.2,   0.4,   0.6,  0.8,  0.95, 1,    1.5,  4};
-// Relative distances from the rim of the medial disc.
+// Distances from the plane of the medial disc, and from the other coordinate planes, in radii.
+constexpr double thin_grades[] = {1e-18, 1e-12, 1e-8, 1e-5, 1e-3, 0.01, 0.03, 0.1,
+                                  0.2,   0.4,   0.6,  0.8,  0.95, 1,    1.5,  4};
+constexpr double grades[] = {1e-12, 1e-5, 0.01, 0.1, 0.4, 0.8, 1, 4};
+// Relative distances from the rim of the medial disc, and directions towards it.
 constexpr double rim_grades[] = {-0.1, -0.01, -1e-3, -1e-4, -1e-6, -1e-9, -1e-12, -1e-15, 0,
                                  0.1,  0.01,  1e-3,  1e-4,  1e-6,  1e-9,  1e-12,  1e-15};
-constexpr double rim_directions[] = {0, 0.1, 0.5, 1};
+constexpr double rim_directions[] = {0, 0.3, 1};
 
 }  // namespace
 
@@ -60,15 +62,17 @@ void EllipsoidDistance<N>::set(const std::array<double, N>& radii) {
   steps_ = 0;
   int steps = 0;
   std::array<double, N> y;
-  const auto visit = [&](auto&& self, int axis, const auto& along, const auto& use) -> void {
+  const auto visit = [&](auto&& self, int axis, std::span<const double> thin,
+                         std::span<const double> wide, const auto& use) -> void {
     if (axis == N) return use();
-    for (double grade : along) {
+    for (double grade : axis == shortest_ ? thin : wide) {
       y[axis] = grade * radii[axis];
-      self(self, axis + 1, along, use);
+      self(self, axis + 1, thin, wide, use);
     }
   };
-  visit(visit, 0, grades, [&] { steps = std::max(steps, steps_needed(y)); });
-  visit(visit, 0, rim_directions, [&] { steps = std::max(steps, steps_needed_near_rim(y)); });
+  visit(visit, 0, thin_grades, grades, [&] { steps = std::max(steps, steps_needed(y)); });
+  visit(visit, 0, {thin_grades, 8}, rim_directions,
+        [&] { steps = std::max(steps, steps_needed_near_rim(y)); });
   steps_ = steps + 1;
 }
 
@@ -81,13 +85,11 @@ int EllipsoidDistance<N>::steps_needed_near_rim(const std::array<double, N>& dir
   if (squares == 0) return 0;
   int steps = 0;
   for (double rim : rim_grades) {
-    for (double thin : grades) {
-      std::array<double, N> y{};
-      for (int i = 0; i < N; ++i) {
-        y[i] = excess_[i] > 0 ? direction[i] * (1 + rim) / std::sqrt(squares) : thin * radii_[i];
-      }
-      steps = std::max(steps, steps_needed(y));
+    std::array<double, N> y = direction;
+    for (int i = 0; i < N; ++i) {
+      if (excess_[i] > 0) y[i] *= (1 + rim) / std::sqrt(squares);
     }
+    steps = std::max(steps, steps_needed(y));
   }
   return steps;
 }

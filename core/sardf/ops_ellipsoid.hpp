@@ -78,8 +78,8 @@ class EllipsoidDistance {
     return s;
   }
 
-  /// Newton steps that the root takes for this point, and the most near a point of the medial
-  /// disc's rim in this direction.
+  /// Newton steps that the root takes for this point, and the most where a ray in this
+  /// direction meets the medial disc's rim.
   int steps_needed(std::array<double, N> y) const;
   int steps_needed_near_rim(const std::array<double, N>& direction) const;
 

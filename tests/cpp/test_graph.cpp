@@ -1,0 +1,228 @@
+// Expressions: equal ones are one node, shared ones run once, and depth costs no stack.
+#include <gtest/gtest.h>
+#include <pthread.h>
+#include <tbb/global_control.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <thread>
+
+#include "laws.hpp"
+#include "sardf/arithmetic.hpp"
+#include "sardf/certify.hpp"
+
+namespace sardf {
+namespace {
+
+const Expression x = coordinate(0), y = coordinate(1), z = coordinate(2);
+
+TEST(Graph, EqualExpressionsAreOneNode) {
+  EXPECT_EQ(x + y, x + y);
+  EXPECT_NE(x + y, y + x);
+  EXPECT_EQ(constant(2), constant(2));
+  EXPECT_NE(constant(0.0), constant(-0.0));
+  const auto sphere = [](double radius) {
+    return make_field("sphere", {Vec3{}, radius}).expression();
+  };
+  EXPECT_EQ(sphere(1), sphere(1));
+  EXPECT_NE(sphere(1), sphere(2));
+}
+
+TEST(Graph, ConstantsAreFolded) {
+  const Expression folded = constant(2) * constant(3) + constant(1);
+  ASSERT_TRUE(is_constant(folded));
+  EXPECT_EQ(folded->value, 7);
+}
+
+TEST(Graph, SharedPartsRunOnce) {
+  // Written out, the 40 levels have 2^40 leaves.
+  Expression doubled = x * y;
+  for (int i = 0; i < 40; ++i) doubled = doubled + doubled;
+  const Evaluator evaluator(doubled);
+  EXPECT_EQ(evaluator.tape().instructions().size(), 41u);
+  EXPECT_EQ(evaluator.value({3, 5, 0}), 15 * 0x1p40);
+}
+
+TEST(Graph, OutputsShareTheirParts) {
+  const Expression part = sardf::length(x, y) + z;
+  const std::vector<Expression> outputs{part * part, part + constant(1), part};
+  const Evaluator evaluator(outputs);
+  EXPECT_EQ(evaluator.tape().instructions().size(), 4u);
+  double out[3];
+  evaluator.values(Vec3{3, 4, 1}, out);
+  EXPECT_EQ(out[0], 36);
+  EXPECT_EQ(out[1], 7);
+  EXPECT_EQ(out[2], 6);
+}
+
+TEST(Graph, RegistersAreReused) {
+  Expression chain = x;
+  for (int i = 0; i < 1000; ++i) chain = sin(i) > 2 ? chain : abs(chain + y);
+  EXPECT_LT(Evaluator(chain).tape().registers(), 10u);
+}
+
+TEST(Graph, SubstitutionKeepsSharing) {
+  const Expression part = x * y;
+  const std::vector<Expression> both{part + z, part - z};
+  const std::vector<Expression> moved = substitute(both, {x + constant(1), y, z});
+  EXPECT_EQ(moved[0]->inputs[0], moved[1]->inputs[0]);
+  EXPECT_EQ(Evaluator(moved[0]).value({2, 5, 7}), 22);
+}
+
+/// Runs work on a thread with 256 KiB of stack, where a recursion 100 000 deep has no room.
+void on_small_stack(std::function<void()> work) {
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  ASSERT_EQ(pthread_attr_setstacksize(&attributes, 256 * 1024), 0);
+  pthread_t thread;
+  const auto call = [](void* f) -> void* {
+    (*static_cast<std::function<void()>*>(f))();
+    return nullptr;
+  };
+  ASSERT_EQ(pthread_create(&thread, &attributes, call, &work), 0);
+  pthread_join(thread, nullptr);
+  pthread_attr_destroy(&attributes);
+}
+
+// Levels of min(a, i) joined by sardf with y: no level folds away or repeats.
+Expression deep_tree(int levels) {
+  const BlendPointer blend = make_blend("sardf", {0.5});
+  Expression deep = x;
+  for (int i = 0; i < levels; i += 2) {
+    deep = call(blend->unite, {call(blend->intersection, {deep, constant(i + 1)}), y});
+  }
+  return deep;
+}
+
+TEST(DeepGraph, NeedsNoStack) {
+  const size_t before = live_nodes();
+  on_small_stack([] {
+    Expression deep = deep_tree(100000);
+    const Expression moved = substitute(deep, {x + constant(1), y, z});
+    const Evaluator evaluator(moved), original(deep);
+    EXPECT_EQ(evaluator.tape().instructions().size(), 100001u);
+    EXPECT_EQ(evaluator.value({1, 3, 0}), original.value({2, 3, 0}));
+    const BoundingBox box{{0, 2, 0}, {2, 4, 0}};
+    const double value = evaluator.value({1, 3, 0});
+    EXPECT_TRUE(evaluator.interval(box).contains(value));
+    EXPECT_FALSE(std::isnan(evaluator.slope(box).length));
+    EXPECT_NEAR(error_bound(moved), 100000 * 0.5 * (1 - std::sqrt(0.5)), 1e-6);
+    std::vector<float> points(3 * 16, 2), out(16), gradient(3 * 16);
+    evaluator.values(points.data(), 16, out.data());
+    // A hundred thousand roundings.
+    EXPECT_NEAR(out[0], evaluator.value({2, 2, 2}), 2e-3);
+    evaluator.gradients(points.data(), 16, out.data(), gradient.data());
+    EXPECT_FALSE(std::isnan(gradient[0]));
+    const double point[3] = {2, 2, 2};
+    double exact, slope[3];
+    evaluator.gradients(point, 1, &exact, slope);
+    EXPECT_EQ(exact, evaluator.value({2, 2, 2}));
+  });
+  EXPECT_EQ(live_nodes(), before);
+}
+
+// A chain of fields holds constructions as well as expressions.
+TEST(DeepGraph, FieldsNeedNoStack) {
+  const size_t before = live_nodes();
+  on_small_stack([] {
+    Field deep = make_field("sphere", {Vec3{}, 1.0});
+    for (int i = 0; i < 100000; ++i) {
+      deep = make_field("offset", {deep, 1.0 + i});
+    }
+    EXPECT_LT(Evaluator(deep.expression()).value({0, 0, 0}), infinity);
+  });
+  EXPECT_EQ(live_nodes(), before);
+}
+
+TEST(Graph, NodesOfAnotherThreadAreFreed) {
+  const size_t before = live_nodes();
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([t] {
+      laws::Random r{uint64_t(t % 2)};
+      for (int i = 0; i < 200; ++i) laws::random_field(r, 1);
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(live_nodes(), before);
+}
+
+class ManyPoints : public testing::Test {
+ protected:
+  ManyPoints() : evaluator_(laws::random_field(random_, 2).expression()), points_(3 * count) {
+    for (float& a : points_) a = float(random_.ordinary());
+    exact_.assign(points_.begin(), points_.end());
+  }
+  static constexpr size_t count = 100003;
+  laws::Random random_{41};
+  Evaluator evaluator_;
+  std::vector<float> points_;
+  std::vector<double> exact_;
+};
+
+TEST_F(ManyPoints, ResultsDoNotDependOnThreads) {
+  std::vector<float> single(count), values(count);
+  std::vector<double> exact(count), gradient(3 * count), again(count), gradient_again(3 * count);
+  const auto bits_agree = [](const auto& a, const auto& b) {
+    return std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0;
+  };
+  {
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    evaluator_.values(points_.data(), count, single.data());
+    evaluator_.gradients(exact_.data(), count, exact.data(), gradient.data());
+  }
+  const tbb::global_control two(tbb::global_control::max_allowed_parallelism, 2);
+  evaluator_.values(points_.data(), count, values.data());
+  evaluator_.gradients(exact_.data(), count, again.data(), gradient_again.data());
+  EXPECT_TRUE(bits_agree(single, values));
+  EXPECT_TRUE(bits_agree(exact, again));
+  EXPECT_TRUE(bits_agree(gradient, gradient_again));
+}
+
+TEST_F(ManyPoints, BlocksOfAnyLengthAgree) {
+  std::vector<float> whole(count);
+  evaluator_.values(points_.data(), count, whole.data());
+  for (size_t n : {1, 2, 15, 16, 17, 31, 255, 256}) {
+    std::vector<float> in[3], out(n);
+    for (size_t i = 0; i < n; ++i) {
+      for (int axis = 0; axis < 3; ++axis) in[axis].push_back(points_[3 * i + axis]);
+    }
+    float* to = out.data();
+    evaluator_.block(in[0].data(), in[1].data(), in[2].data(), n, &to);
+    for (size_t i = 0; i < n; ++i) EXPECT_EQ(out[i], whole[i]) << n;
+  }
+}
+
+TEST_F(ManyPoints, ProgressRisesToOneAndCancels) {
+  std::vector<double> out(count);
+  double last = 0;
+  evaluator_.values(exact_.data(), count, out.data(), [&](double share) {
+    EXPECT_GE(share, last);
+    last = share;
+    return true;
+  });
+  EXPECT_EQ(last, 1);
+  EXPECT_THROW(evaluator_.values(exact_.data(), count, out.data(), [](double) { return false; }),
+               Cancelled);
+}
+
+TEST(Cancel, TakesEffectWithinATenthOfASecond) {
+  // 20 000 instructions on a million points: far more than a second of work.
+  const Evaluator evaluator(deep_tree(20000));
+  const std::vector<float> points(3000000, 1);
+  std::vector<float> out(1000000);
+  std::chrono::steady_clock::time_point asked;
+  int reports = 0;
+  const auto cancel = [&](double) {
+    asked = std::chrono::steady_clock::now();
+    return ++reports < 2;
+  };
+  EXPECT_THROW(evaluator.values(points.data(), out.size(), out.data(), cancel), Cancelled);
+  const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - asked;
+  EXPECT_LT(waited.count(), 0.1);
+}
+
+}  // namespace
+}  // namespace sardf

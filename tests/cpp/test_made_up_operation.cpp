@@ -1,0 +1,118 @@
+// Adding an operation touches one place: this file adds a solid and a function, and finds them in
+// everything that is derived from the list.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sardf/arithmetic.hpp"
+#include "sardf/constructor.hpp"
+#include "sardf/constructor_of.hpp"
+#include "sardf/evaluate.hpp"
+
+namespace sardf {
+namespace {
+
+/// A sphere whose radius shrinks along z.
+struct Pear {
+  static constexpr const char *name = "pear", *doc = "A sphere, thinner at the top.";
+  static constexpr Kind kind = Kind::solid;
+  static constexpr int arity = 3;
+  Vec3 center{};
+  double radius = 1, taper = 0.25;
+  template <class V>
+  static void parameters(V& v) {
+    v(length_of("center", "its middle"), &Pear::center);
+    v(positive_length("radius", "radius at the middle"), &Pear::radius);
+    v(Parameter{"taper", "how fast it gets thinner"}, &Pear::taper);
+  }
+  template <class T>
+  T eval(T x, T y, T z) const {
+    const T along = z - T(center[2]);
+    return T(radius) - T(taper) * along - length(x - T(center[0]), y - T(center[1]), along);
+  }
+};
+
+struct Wobble {
+  static constexpr const char *name = "wobble", *doc = "sin(a) * exp(-b * b)";
+  static constexpr Kind kind = Kind::function;
+  static constexpr int arity = 2;
+  template <class T>
+  T eval(T a, T b) const {
+    return sin(a) * exp(-square(b));
+  }
+};
+
+const Constructor& pear() {
+  if (!find_constructor("pear")) {
+    add_constructor(constructor_of_operation<Pear>());
+    add_function(make_operation(Wobble{}));
+  }
+  return *find_constructor("pear");
+}
+
+class MadeUpOperation : public testing::Test {
+ protected:
+  MadeUpOperation() : evaluator_(make_field(pear(), {Vec3{1, 0, 0}, 2.0, 0.5}).expression()) {}
+  // At (1, 3, 4) from the centre (1, 0, 0): 2 - 0.5 * 4 - 5.
+  static constexpr double value = -5;
+  const Vec3 at_{1, 3, 4};
+  Evaluator evaluator_;
+};
+
+TEST_F(MadeUpOperation, IsInTheRegistryWithItsParameters) {
+  const auto named = [](const Constructor& c) { return c.name == "pear"; };
+  EXPECT_EQ(std::ranges::count_if(constructors(), named), 1);
+  EXPECT_EQ(pear().group, "solid");
+  EXPECT_EQ(pear().doc, Pear::doc);
+  ASSERT_EQ(pear().parameters.size(), 3u);
+  EXPECT_EQ(pear().parameters[0].type, ParameterType::vector3);
+  EXPECT_TRUE(pear().parameters[1].required);
+  EXPECT_EQ(pear().parameters[2].name, "taper");
+  EXPECT_EQ(std::get<double>(pear().parameters[2].default_value), 0.25);
+  EXPECT_THROW(make_field(pear(), {Vec3{}, -1.0, 0.5}), Error);
+  EXPECT_THROW(add_constructor(constructor_of_operation<Pear>()), Error);
+}
+
+TEST_F(MadeUpOperation, EvaluatesInDoubleAndFloat) {
+  EXPECT_DOUBLE_EQ(evaluator_.value(at_), value);
+  std::vector<float> points, out(100);
+  for (int i = 0; i < 100; ++i) points.insert(points.end(), {1, 3, 4});
+  evaluator_.values(points.data(), out.size(), out.data());
+  for (float result : out) EXPECT_FLOAT_EQ(result, float(value));
+}
+
+TEST_F(MadeUpOperation, HasBoundsAndGradients) {
+  const Interval bound = evaluator_.interval({{0, 2, 3}, {2, 4, 5}});
+  EXPECT_TRUE(bound.contains(value));
+  EXPECT_GT(bound.lo, -20);
+  double gradient[3];
+  evaluator_.gradients(at_.data(), 1, nullptr, gradient);
+  EXPECT_DOUBLE_EQ(gradient[0], 0);
+  EXPECT_DOUBLE_EQ(gradient[1], -0.6);
+  EXPECT_DOUBLE_EQ(gradient[2], -0.5 - 0.8);
+  EXPECT_GE(evaluator_.slope({{0, 2, 3}, {2, 4, 5}}).length, std::hypot(0.6, 1.3));
+}
+
+TEST_F(MadeUpOperation, RecordsItsFormula) {
+  const OperationPointer operation = make_operation(Pear{});
+  Trace trace(3);
+  operation->record(trace);
+  ASSERT_GE(trace.result, 0);
+  EXPECT_EQ(trace[trace.result].name, "-");
+  const auto is_root = [](const TraceStep& step) { return step.name == "sqrt"; };
+  EXPECT_EQ(std::ranges::count_if(trace.steps(), is_root), 1);
+}
+
+TEST_F(MadeUpOperation, FunctionIsAWordOfFormulas) {
+  EXPECT_EQ(std::ranges::count(function_names(), "wobble"), 1);
+  const Expression wobble = function("wobble", {coordinate(0), coordinate(1)});
+  EXPECT_DOUBLE_EQ(Evaluator(wobble).value({1, 0.5, 0}), std::sin(1) * std::exp(-0.25));
+  const Interval bound = Evaluator(wobble).interval({{0, -1, 0}, {1, 1, 0}});
+  EXPECT_TRUE(bound.contains(std::sin(1)));
+  EXPECT_LE(bound.hi, 1);
+  EXPECT_THROW(add_function(make_operation(Wobble{})), Error);
+}
+
+}  // namespace
+}  // namespace sardf

@@ -85,6 +85,8 @@ atlas::Layout lay_out(const atlas::Surface& surface, int size, int gutter, Repor
   atlas::Layout layout = atlas::flatten_patches(surface, patches, thin_gap, report);
   reporter.stage(0.3);
   atlas::sew_charts(surface, layout, gap, thin_gap, chart_limit, report);
+  reporter.stage(0.65);
+  atlas::polish(surface, layout, thin_gap, report);
   return layout;
 }
 

@@ -13,6 +13,7 @@ namespace {
 constexpr double patch_stretch = 1.6;
 constexpr double nearly_flat = 1.01;
 constexpr int patch_iterations = 6;
+constexpr int final_iterations = 10;
 
 void sew_within(const Surface& surface, const std::vector<uint32_t>& faces, Layout& layout) {
   for (const uint32_t f : faces)
@@ -49,16 +50,25 @@ bool flatten(const Surface& surface, const std::vector<uint32_t>& faces, double 
   }
   project(surface, faces, layout);
   ChartMesh chart = build_chart(surface, layout, faces);
-  Quality quality = measure(chart);
+  const Quality quality = measure(chart);
   const bool flat = quality.folded == 0 && quality.stretch_high < nearly_flat;
   relax(chart, flat ? 0 : patch_iterations);
-  quality = measure(chart);
-  if (quality.folded > 0 || quality.stretch_high > patch_stretch) return false;
-  store_chart(chart, faces, layout);
-  return is_embedded(surface, layout, faces, gap);
+  return measure(chart).stretch_high < patch_stretch &&
+         store_embedded(surface, faces, gap, chart, layout);
 }
 
 }  // namespace
+
+bool store_embedded(const Surface& surface, const std::vector<uint32_t>& faces, double gap,
+                    ChartMesh& chart, Layout& layout) {
+  if (measure(chart).folded > 0) return false;
+  store_chart(chart, faces, layout);
+  if (is_embedded(surface, layout, faces, gap)) return true;
+  if (!remove_crossings(chart) || measure(chart).folded > 0) return false;
+  relax(chart, 0);
+  store_chart(chart, faces, layout);
+  return is_embedded(surface, layout, faces, gap);
+}
 
 std::vector<std::vector<uint32_t>> halve(const Surface& surface, const Layout& layout,
                                          const std::vector<uint32_t>& faces) {
@@ -138,6 +148,23 @@ Layout flatten_patches(const Surface& surface, const std::vector<uint32_t>& patc
       layout.faces.push_back(std::move(faces));
     }
   return layout;
+}
+
+void polish(const Surface& surface, Layout& layout, double gap,
+            const std::function<void()>& report) {
+  tbb::parallel_for(size_t{0}, layout.faces.size(), [&](size_t c) {
+    const std::vector<uint32_t>& faces = layout.faces[c];
+    if (faces.empty()) return;
+    report();
+    ChartMesh chart = build_chart(surface, layout, faces);
+    const Quality before = measure(chart);
+    if (before.stretch_high < 1.01) return;
+    const ChartMesh old = chart;
+    relax(chart, final_iterations);
+    const Quality quality = measure(chart);
+    if (quality.stretch_mean > before.stretch_mean) return;
+    if (!store_embedded(surface, faces, gap, chart, layout)) store_chart(old, faces, layout);
+  });
 }
 
 size_t halve_largest(const Surface& surface, Layout& layout, size_t limit) {

@@ -52,43 +52,6 @@ bool face_each_other(const BoundarySample& p, const BoundarySample& q, double dx
          -q.outward[0] * dx - q.outward[1] * dy > 0.2 * distance;
 }
 
-double side_of(const Vec2& a, const Vec2& b, const Vec2& p) {
-  return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
-}
-
-struct Segment {
-  Vec2 a, b;
-  bool crosses(const Segment& o) const {
-    return side_of(a, b, o.a) * side_of(a, b, o.b) < 0 &&
-           side_of(o.a, o.b, a) * side_of(o.a, o.b, b) < 0;
-  }
-};
-
-/// Whether any two segments cross at an inner point of both.
-bool any_cross(const std::vector<Segment>& segments) {
-  double length = 0;
-  for (const Segment& s : segments) length += std::hypot(s.b[0] - s.a[0], s.b[1] - s.a[1]);
-  const double cell = 2 * length / static_cast<double>(segments.size()) + 1e-300;
-  const auto column = [&](double v) { return static_cast<int64_t>(std::floor(v / cell)); };
-  // Sorted by cell; segments in one cell are then compared with each other.
-  std::vector<std::array<int64_t, 3>> cells;
-  for (size_t i = 0; i < segments.size(); ++i) {
-    const auto [x0, x1] = std::minmax(segments[i].a[0], segments[i].b[0]);
-    const auto [y0, y1] = std::minmax(segments[i].a[1], segments[i].b[1]);
-    for (int64_t y = column(y0); y <= column(y1); ++y)
-      for (int64_t x = column(x0); x <= column(x1); ++x)
-        cells.push_back({x, y, static_cast<int64_t>(i)});
-  }
-  std::sort(cells.begin(), cells.end());
-  for (size_t i = 0; i < cells.size(); ++i)
-    for (size_t j = i + 1;
-         j < cells.size() && cells[j][0] == cells[i][0] && cells[j][1] == cells[i][1]; ++j)
-      if (segments[static_cast<size_t>(cells[i][2])].crosses(
-              segments[static_cast<size_t>(cells[j][2])]))
-        return true;
-  return false;
-}
-
 double turning(const Layout& layout, const Surface& surface, const std::vector<uint32_t>& loop) {
   double sum = 0;
   for (size_t i = 0; i < loop.size(); ++i) {
@@ -181,7 +144,7 @@ bool is_embedded(const Surface& surface, const Layout& layout, const std::vector
   for (const auto& loop : loops)
     for (const uint32_t h : loop)
       segments.push_back({layout.flat[h], layout.flat[surface.next(h)]});
-  return outer == 1 && !any_cross(segments) &&
+  return outer == 1 && crossings(segments, 1).empty() &&
          !too_close(sample_boundary(surface, layout, loops, gap), gap);
 }
 

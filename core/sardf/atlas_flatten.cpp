@@ -142,7 +142,7 @@ void scale_to_true_area(ChartMesh& chart) {
 bool is_slightly_folded(const ChartMesh& chart) {
   size_t folded = 0;
   for (size_t t = 0; t < chart.triangles.size(); ++t) folded += folds(chart, t);
-  return folded > 0 && 50 * folded < chart.triangles.size();
+  return folded > 0 && (folded < 4 || 50 * folded < chart.triangles.size());
 }
 
 }  // namespace
@@ -210,11 +210,11 @@ void relax(ChartMesh& chart, int iterations) {
         const auto row = static_cast<Eigen::Index>(v);
         chart.flat[v] = {moved(row, 0), moved(row, 1)};
       }
-      // A few folded triangles beside a seam often need some rounds more.
-      if (i + 1 >= iterations && i < 3 * iterations && is_slightly_folded(chart)) continue;
-      if (i + 1 >= iterations) break;
+      // A few folded triangles beside a seam often need a few rounds more.
+      if (i + 1 >= iterations && (i + 1 >= 2 * iterations || !is_slightly_folded(chart))) break;
     }
   }
+  if (is_slightly_folded(chart)) untangle(chart);
   scale_to_true_area(chart);
 }
 

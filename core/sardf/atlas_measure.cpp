@@ -8,6 +8,8 @@
 namespace sardf::atlas {
 namespace {
 
+/// Of a triangle's own area: a thinner one may fold when it is turned into its place.
+constexpr double least_area = 1e-3;
 constexpr double worst = 1e6;  // stands for a folded triangle's stretch
 
 struct Sample {
@@ -67,7 +69,8 @@ double mean_stretch(const std::vector<Sample>& samples) {
 bool folds(const ChartMesh& chart, size_t triangle) {
   const auto& [a, b, c] = chart.triangles[triangle];
   const Vec2 &p = chart.flat[a], &q = chart.flat[b], &r = chart.flat[c];
-  return !((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]) > 0);
+  const double area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+  return !(area > least_area * chart.shapes[triangle][0] * chart.shapes[triangle][2]);
 }
 
 Quality measure(const ChartMesh& chart) {

@@ -8,13 +8,13 @@
 #include <map>
 #include <set>
 
+#include "sardf/atlas_seams.hpp"
 #include "sardf/atlas_stages.hpp"
 
 namespace sardf::atlas {
 namespace {
 
 constexpr int sew_iterations = 4;
-constexpr int final_iterations = 10;
 
 struct Level {
   double stretch;   // largest that a sewn chart may have
@@ -30,24 +30,12 @@ constexpr Level levels[] = {{1.15, 0.10, 0.22, true, false}, {1.40, 0.25, 0.22, 
                             {2.00, 0.60, 0.10, false, true}, {2.00, 0.60, 0.05, false, true},
                             {2.20, 0.60, 0.00, false, true}};
 
-using Pair = std::pair<uint32_t, uint32_t>;
+/// Crumbs, left over where a mesh is uneven along creases, hardly take up texels themselves, but
+/// their gutters do, and bilinear lookups like no borders: they are sewn on at any stretch.
+constexpr double crumb_stretch = 30;
+bool is_crumb(double area, double gap) { return area < 4 * gap * gap; }
 
-/// A rotation and a shift of the plane.
-struct Motion {
-  double cosine = 1, sine = 0;
-  Vec2 shift{0, 0};
-  Vec2 turn(const Vec2& p) const {
-    return {cosine * p[0] - sine * p[1], sine * p[0] + cosine * p[1]};
-  }
-  Vec2 operator()(const Vec2& p) const {
-    const Vec2 q = turn(p);
-    return {q[0] + shift[0], q[1] + shift[1]};
-  }
-};
-Motion after(const Motion& second, const Motion& first) {
-  return {second.cosine * first.cosine - second.sine * first.sine,
-          second.sine * first.cosine + second.cosine * first.sine, second(first.shift)};
-}
+using Pair = std::pair<uint32_t, uint32_t>;
 
 struct Cluster {
   std::vector<uint32_t> charts;
@@ -74,13 +62,13 @@ class Tailor {
   };
   void gather(double gap);
   std::vector<Candidate> candidates(const Level& level) const;
-  std::vector<std::vector<uint32_t>> runs(const std::vector<uint32_t>& half_edges) const;
   Vec2 placed(uint32_t corner) const {
     return motion_[layout_.chart_of_face[corner / 4]](layout_.flat[corner]);
   }
-  Motion fit(const std::vector<uint32_t>& run) const;
+  Motion fit_sides(const std::vector<uint32_t>& run) const;
   double mismatch(const std::vector<uint32_t>& run, const Motion& motion) const;
   bool plan(const Pair& pair, const Level& level, double gap);
+  void absorb(uint32_t a, uint32_t b, const Motion& motion);
   bool apart(const Cluster& a, const Cluster& b, const Motion& motion,
              const std::vector<uint32_t>& sewn, double gap) const;
   bool join(const Cluster& cluster, const Level& level, double gap, std::vector<uint32_t>& faces);
@@ -150,71 +138,16 @@ std::vector<Tailor::Candidate> Tailor::candidates(const Level& level) const {
   return result;
 }
 
-/// Half-edges grouped by connection through mesh vertices; the longest group first.
-std::vector<std::vector<uint32_t>> Tailor::runs(const std::vector<uint32_t>& half_edges) const {
-  std::map<uint32_t, std::vector<size_t>> at_vertex;
-  for (size_t i = 0; i < half_edges.size(); ++i) {
-    at_vertex[surface_.vertex(half_edges[i])].push_back(i);
-    at_vertex[surface_.vertex(surface_.next(half_edges[i]))].push_back(i);
-  }
-  std::vector<std::vector<uint32_t>> result;
-  std::vector<char> seen(half_edges.size(), 0);
-  for (size_t start = 0; start < half_edges.size(); ++start) {
-    if (seen[start]) continue;
-    result.emplace_back();
-    std::vector<size_t> stack{start};
-    seen[start] = 1;
-    while (!stack.empty()) {
-      const uint32_t h = half_edges[stack.back()];
-      stack.pop_back();
-      result.back().push_back(h);
-      for (const uint32_t v : {surface_.vertex(h), surface_.vertex(surface_.next(h))})
-        for (const size_t j : at_vertex[v])
-          if (!seen[j]) {
-            seen[j] = 1;
-            stack.push_back(j);
-          }
-    }
-  }
-  std::stable_sort(result.begin(), result.end(),
-                   [](const auto& p, const auto& q) { return p.size() > q.size(); });
-  return result;
-}
-
 /// The motion that brings the far sides of the half-edges closest to their near sides.
-Motion Tailor::fit(const std::vector<uint32_t>& run) const {
-  Vec2 near_mean{0, 0}, far_mean{0, 0};
-  double weight = 0;
-  std::vector<std::array<Vec2, 2>> points;
-  std::vector<double> weights;
+Motion Tailor::fit_sides(const std::vector<uint32_t>& run) const {
+  std::vector<PointPair> pairs;
   for (const uint32_t h : run) {
-    const uint32_t twin = surface_.twin[h];
-    const double w = norm(surface_.point(surface_.next(h)) - surface_.point(h)) + 1e-300;
-    for (const auto& [p, q] : {std::pair{h, surface_.next(twin)}, {surface_.next(h), twin}}) {
-      points.push_back({placed(p), placed(q)});
-      weights.push_back(w);
-      weight += w;
-      for (size_t k = 0; k < 2; ++k) {
-        near_mean[k] += w * points.back()[0][k];
-        far_mean[k] += w * points.back()[1][k];
-      }
-    }
+    const uint32_t after_h = surface_.next(h), twin = surface_.twin[h];
+    const double weight = norm(surface_.point(after_h) - surface_.point(h)) + 1e-300;
+    pairs.push_back({placed(surface_.next(twin)), placed(h), weight});
+    pairs.push_back({placed(twin), placed(after_h), weight});
   }
-  near_mean = {near_mean[0] / weight, near_mean[1] / weight};
-  far_mean = {far_mean[0] / weight, far_mean[1] / weight};
-  double along = 0, across = 0;
-  for (size_t i = 0; i < points.size(); ++i) {
-    const double px = points[i][1][0] - far_mean[0], py = points[i][1][1] - far_mean[1];
-    const double qx = points[i][0][0] - near_mean[0], qy = points[i][0][1] - near_mean[1];
-    along += weights[i] * (px * qx + py * qy);
-    across += weights[i] * (px * qy - py * qx);
-  }
-  const double length = std::hypot(along, across);
-  Motion motion;
-  if (length > 0) motion = {along / length, across / length, {0, 0}};
-  const Vec2 turned = motion.turn(far_mean);
-  motion.shift = {near_mean[0] - turned[0], near_mean[1] - turned[1]};
-  return motion;
+  return fit(pairs);
 }
 
 double Tailor::mismatch(const std::vector<uint32_t>& run, const Motion& motion) const {
@@ -229,8 +162,7 @@ double Tailor::mismatch(const std::vector<uint32_t>& run, const Motion& motion) 
 /// Whether no boundary of b, moved, faces one of a closer than `gap`, except near sewn sides.
 bool Tailor::apart(const Cluster& a, const Cluster& b, const Motion& motion,
                    const std::vector<uint32_t>& sewn, double gap) const {
-  std::vector<BoundarySample> samples, seam;
-  for (const uint32_t h : sewn) seam.push_back({placed(h), {0, 0}, 0, 0, 0});
+  std::vector<BoundarySample> samples;
   const auto add = [&](const Cluster& cluster, const Motion& extra, uint32_t side) {
     for (const uint32_t c : cluster.charts) {
       const Motion whole = after(extra, motion_[c]);
@@ -240,30 +172,19 @@ bool Tailor::apart(const Cluster& a, const Cluster& b, const Motion& motion,
   };
   add(a, Motion{}, 0);
   add(b, motion, 1);
-  std::vector<BoundarySample> kept;
-  const double reach = 4 * gap;
-  std::map<std::pair<int64_t, int64_t>, bool> near_seam;
-  const auto cell = [&](const Vec2& p) {
-    return std::pair{static_cast<int64_t>(std::floor(p[0] / reach)),
-                     static_cast<int64_t>(std::floor(p[1] / reach))};
-  };
-  for (const BoundarySample& s : seam) {
-    const auto [x, y] = cell(s.position);
-    for (int64_t dy = -1; dy <= 1; ++dy)
-      for (int64_t dx = -1; dx <= 1; ++dx) near_seam[{x + dx, y + dy}] = true;
-  }
-  for (const BoundarySample& s : samples)
-    if (!near_seam.contains(cell(s.position))) kept.push_back(s);
-  return !too_close(kept, gap);
+  std::vector<Vec2> seam;
+  for (const uint32_t h : sewn) seam.push_back(placed(h));
+  return !too_close(without_near(samples, seam, 4 * gap), gap);
 }
 
 bool Tailor::plan(const Pair& pair, const Level& level, double gap) {
   const uint32_t a = cluster_of_[pair.first], b = cluster_of_[pair.second];
-  const auto paths = runs(shared_.at(pair));
-  const Motion motion = fit(paths[0]);
-  const double tolerance =
-      level.mismatch * std::sqrt(std::min(area_[pair.first], area_[pair.second]));
-  if (mismatch(paths[0], motion) > tolerance) return false;
+  const auto paths = runs_of(surface_, shared_.at(pair));
+  const Motion motion = fit_sides(paths[0]);
+  const double area = std::min(area_[pair.first], area_[pair.second]);
+  const bool crumb = is_crumb(area, gap);
+  const double tolerance = level.mismatch * std::sqrt(area);
+  if (!crumb && mismatch(paths[0], motion) > tolerance) return false;
   std::vector<uint32_t> sewn = paths[0];
   for (const uint32_t p : clusters_[a].charts)
     for (const uint32_t q : clusters_[b].charts) {
@@ -272,24 +193,29 @@ bool Tailor::plan(const Pair& pair, const Level& level, double gap) {
       std::vector<uint32_t> near_side = found->second;
       if (p > q)
         for (uint32_t& h : near_side) h = surface_.twin[h];
-      for (const auto& run : runs(near_side))
+      for (const auto& run : runs_of(surface_, near_side))
         if (run[0] != paths[0][0] && mismatch(run, motion) <= tolerance)
           sewn.insert(sewn.end(), run.begin(), run.end());
     }
-  if (!apart(clusters_[a], clusters_[b], motion, sewn, gap)) return false;
+  if (!crumb && !apart(clusters_[a], clusters_[b], motion, sewn, gap)) return false;
+  clusters_[a].joins.push_back(pair);
+  clusters_[a].sewn.insert(clusters_[a].sewn.end(), sewn.begin(), sewn.end());
+  absorb(a, b, motion);
+  return true;
+}
+
+void Tailor::absorb(uint32_t a, uint32_t b, const Motion& motion) {
   for (const uint32_t c : clusters_[b].charts) {
     motion_[c] = after(motion, motion_[c]);
     cluster_of_[c] = a;
-    clusters_[a].charts.push_back(c);
   }
-  auto& joins = clusters_[a].joins;
-  joins.insert(joins.end(), clusters_[b].joins.begin(), clusters_[b].joins.end());
-  joins.push_back(pair);
-  auto& all = clusters_[a].sewn;
-  all.insert(all.end(), clusters_[b].sewn.begin(), clusters_[b].sewn.end());
-  all.insert(all.end(), sewn.begin(), sewn.end());
+  const auto append = [](auto& to, const auto& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  append(clusters_[a].charts, clusters_[b].charts);
+  append(clusters_[a].joins, clusters_[b].joins);
+  append(clusters_[a].sewn, clusters_[b].sewn);
   clusters_[b] = Cluster{};
-  return true;
 }
 
 /// Sews and relaxes a cluster; leaves the layout as it was when the result is not good enough.
@@ -312,10 +238,11 @@ bool Tailor::join(const Cluster& cluster, const Level& level, double gap,
     relax(chart, sew_iterations);
     quality = measure(chart);
   }
-  if (quality.folded == 0 && quality.stretch_high <= level.stretch) {
-    store_chart(chart, faces, layout_);
-    if (is_embedded(surface_, layout_, faces, gap)) return true;
-  }
+  double smallest = area_[cluster.charts[0]];
+  for (const uint32_t c : cluster.charts) smallest = std::min(smallest, area_[c]);
+  const double limit = is_crumb(smallest, gap) ? crumb_stretch : level.stretch;
+  if (quality.stretch_high <= limit && store_embedded(surface_, faces, gap, chart, layout_))
+    return true;
   for (const uint32_t h : cluster.sewn) layout_.sewn[h] = layout_.sewn[surface_.twin[h]] = 0;
   for (size_t i = 0; i < before.size(); ++i) layout_.flat[4 * faces[i / 4] + i % 4] = before[i];
   return false;
@@ -361,24 +288,6 @@ size_t count_charts(const Layout& layout) {
                                            [](const auto& faces) { return !faces.empty(); }));
 }
 
-void polish(const Surface& surface, Layout& layout, double gap,
-            const std::function<void()>& report) {
-  tbb::parallel_for(size_t{0}, layout.faces.size(), [&](size_t c) {
-    const std::vector<uint32_t>& faces = layout.faces[c];
-    if (faces.empty()) return;
-    report();
-    ChartMesh chart = build_chart(surface, layout, faces);
-    const Quality before = measure(chart);
-    if (before.stretch_high < 1.01) return;
-    const ChartMesh old = chart;
-    relax(chart, final_iterations);
-    const Quality quality = measure(chart);
-    if (quality.folded > 0 || quality.stretch_mean > before.stretch_mean) return;
-    store_chart(chart, faces, layout);
-    if (!is_embedded(surface, layout, faces, gap)) store_chart(old, faces, layout);
-  });
-}
-
 }  // namespace
 
 void sew_charts(const Surface& surface, Layout& layout, double gap, double thin_gap, size_t target,
@@ -394,7 +303,6 @@ void sew_charts(const Surface& surface, Layout& layout, double gap, double thin_
       if (vanished == 0 && i > 1) break;
     }
   }
-  polish(surface, layout, thin_gap, report);
 }
 
 }  // namespace sardf::atlas

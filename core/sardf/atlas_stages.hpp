@@ -1,5 +1,5 @@
 // Shared by the stages of the atlas, in their order: surface, patches, flatten, measure,
-// checks, charts, sew, pack.
+// untangle, crossings, checks, charts, seams, sew, bitmap, pack.
 // Private to core/sardf/atlas*.cpp. Lengths are scene units until atlas_pack; then texels.
 #pragma once
 
@@ -70,6 +70,11 @@ ChartMesh build_chart(const Surface& surface, const Layout& layout,
 void store_chart(const ChartMesh& chart, const std::vector<uint32_t>& faces, Layout& layout);
 /// Flat start for a patch: its projection along its mean normal.
 void project(const Surface& surface, const std::vector<uint32_t>& faces, Layout& layout);
+/// Moves the vertices of folded triangles so that nothing is folded, where a few moves can do it.
+void untangle(ChartMesh& chart);
+/// Smooths the chart where its boundary crosses itself in small loops, as slivers along creases
+/// make them. Returns whether it found any and removed all.
+bool remove_crossings(ChartMesh& chart);
 /// Moves the chart's vertices so that its triangles keep their shapes as well as they can, and
 /// scales it to its true area.
 void relax(ChartMesh& chart, int iterations);
@@ -102,6 +107,11 @@ std::vector<BoundarySample> sample_boundary(const Surface& surface, const Layout
 /// Whether two samples that look at each other are nearer than `gap`, and not neighbours on a
 /// curve.
 bool too_close(const std::vector<BoundarySample>& samples, double gap);
+struct Segment {
+  Vec2 a, b;
+};
+/// The first few pairs of segments, by index, that cross at an inner point of both.
+std::vector<std::array<size_t, 2>> crossings(const std::vector<Segment>& segments, size_t most);
 /// Whether the chart's boundary is simple, keeps `gap` to itself and has one outer curve: with no
 /// flipped triangle the chart then covers no point of the plane twice.
 bool is_embedded(const Surface& surface, const Layout& layout, const std::vector<uint32_t>& faces,
@@ -111,6 +121,10 @@ bool is_embedded(const Surface& surface, const Layout& layout, const std::vector
 /// through sewn half-edges.
 std::vector<std::vector<uint32_t>> halve(const Surface& surface, const Layout& layout,
                                          const std::vector<uint32_t>& faces);
+/// Stores a relaxed chart in the layout; false when it is folded or not embedded and that is not
+/// to be mended. The layout then holds the chart as it was given or half mended.
+bool store_embedded(const Surface& surface, const std::vector<uint32_t>& faces, double gap,
+                    ChartMesh& chart, Layout& layout);
 /// Flattens every patch, splitting those that do not flatten well.
 Layout flatten_patches(const Surface& surface, const std::vector<uint32_t>& patch_of_face,
                        double gap, const std::function<void()>& report);
@@ -118,6 +132,10 @@ Layout flatten_patches(const Surface& surface, const std::vector<uint32_t>& patc
 /// `target` charts it takes more stretch. gap: the gutter in scene units.
 void sew_charts(const Surface& surface, Layout& layout, double gap, double thin_gap, size_t target,
                 const std::function<void()>& report);
+
+/// Relaxes all charts once more, longer, where that helps.
+void polish(const Surface& surface, Layout& layout, double gap,
+            const std::function<void()>& report);
 
 /// Halves the charts larger than half of the largest one, as long as there are no more than `limit`
 /// charts. Returns the number of charts, or 0 when nothing could be halved.

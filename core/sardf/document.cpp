@@ -1,138 +1,180 @@
 #include "sardf/document.hpp"
 
-#include <vector>
+#include <charconv>
 
 #include "sardf/constructor.hpp"
-#include "sardf/fractions.hpp"
-#include "sardf/short_number.hpp"
+#include "sardf/formula_functions.hpp"
+#include "sardf/scene_file_rules.hpp"
 
 namespace sardf {
 
 namespace {
 
 struct Group {
-  const char *name, *title;
+  const char *name, *heading;
 };
-constexpr Group groups[] = {{"solid", "Solids"},           {"plane", "Plane fields"},
-                            {"feature", "Features"},       {"boolean", "Booleans"},
-                            {"value", "Acting on values"}, {"transform", "Transforms"}};
-
-std::string unit_text(Unit unit) {
-  if (unit == Unit::length) return ", scene units";
-  if (unit == Unit::angle) return ", degrees";
-  return "";
-}
-
-std::string range_text(Range range) {
-  if (range == Range::positive) return ", positive";
-  if (range == Range::non_negative) return ", not negative";
-  return "";
-}
-
-struct DefaultText {
-  std::string operator()(std::monostate) const { return "none"; }
-  std::string operator()(bool b) const { return b ? "true" : "false"; }
-  std::string operator()(double a) const { return short_number(a); }
-  std::string operator()(const std::string& s) const { return "\"" + s + "\""; }
-  template <size_t N>
-  std::string operator()(const std::array<double, N>& v) const {
-    std::string text;
-    for (double a : v) text += (text.empty() ? "[" : ", ") + short_number(a);
-    return text + "]";
-  }
-  std::string operator()(const BlendPointer& blend) const { return blend->name; }
-  template <class T>
-  std::string operator()(const T&) const {
-    return "none";
-  }
+constexpr Group groups[] = {
+    {"solid", "Solids: signed, positive inside"},
+    {"plane", "Plane fields: of x and y, the same for every z"},
+    {"feature", "Features: the distance to a set of points"},
+    {"boolean", "Joining fields"},
+    {"value", "Changing a field's value"},
+    {"transform", "Moving a field"},
 };
 
-std::string row(const std::string& name, const std::string& accepts, const std::string& standard,
-                const std::string& doc) {
-  return "| `" + name + "` | " + accepts + " | " + standard + " | " + doc + " |\n";
+std::string number_text(double a) {
+  char text[40];
+  return std::string(text, std::to_chars(text, text + sizeof text, a).ptr);
 }
 
-const char* const table_head = "\n| parameter | accepts | default | |\n|---|---|---|---|\n";
+template <class Numbers>
+std::string numbers_text(const Numbers& all) {
+  std::string text = "[";
+  for (size_t i = 0; i < all.size(); ++i) text.append(i ? ", " : "").append(number_text(all[i]));
+  return text + "]";
+}
 
-std::string parameter_table(const std::vector<ParameterInfo>& parameters) {
-  if (parameters.empty()) return "";
-  std::string text = table_head;
-  for (const ParameterInfo& p : parameters) {
-    text += row(p.name, type_name(p.type) + range_text(p.range) + unit_text(p.unit),
-                p.required ? "**required**" : std::visit(DefaultText{}, p.default_value), p.doc);
-  }
+std::string default_text(const Value& value) {
+  if (const auto* truth = std::get_if<bool>(&value)) return *truth ? "true" : "false";
+  if (const auto* number = std::get_if<double>(&value)) return number_text(*number);
+  if (const auto* word = std::get_if<std::string>(&value)) return '"' + *word + '"';
+  if (const auto* blend = std::get_if<BlendPointer>(&value)) return '"' + (*blend)->name + '"';
+  if (const auto* v = std::get_if<Vec2>(&value)) return numbers_text(*v);
+  if (const auto* v = std::get_if<Vec3>(&value)) return numbers_text(*v);
+  return "none";
+}
+
+std::string accepted_text(const std::string& type, Unit unit, Range range, int at_least) {
+  const char* units[] = {"", ", scene units", ", degrees", ""};
+  const char* ranges[] = {"", ", > 0", ", ≥ 0"};
+  std::string text = type + ranges[size_t(range)] + units[size_t(unit)];
+  if (at_least > 0) text += ", at least " + std::to_string(at_least);
   return text;
 }
 
-std::string rule_type_name(RuleParameterType type) {
+void add_table(std::string& to) {
+  to += "\n| parameter | accepted | default | |\n|---|---|---|---|\n";
+}
+
+void add_row(std::string& to, const std::string& name, const std::string& accepted,
+             const std::string& usual, const std::string& doc) {
+  std::string safe;
+  for (const char c : doc) safe += c == '|' ? std::string("\\|") : std::string(1, c);
+  to += "| `" + name + "` | " + accepted + " | " + usual + " | " + safe + " |\n";
+}
+
+void add_parameters(std::string& to, const std::vector<ParameterInfo>& infos) {
+  if (infos.empty()) return;
+  add_table(to);
+  for (const ParameterInfo& p : infos) {
+    add_row(to, p.name, accepted_text(type_name(p.type), p.unit, p.range, p.at_least),
+            p.required ? "required" : default_text(p.default_value), p.doc);
+  }
+}
+
+void add_constructors(std::string& to) {
+  for (const Group& group : groups) {
+    to += std::string("\n## ") + group.heading + "\n";
+    for (const Constructor& c : constructors()) {
+      if (c.group != group.name) continue;
+      to += "\n### " + c.name + "\n\n" + c.doc + "\n";
+      add_parameters(to, c.parameters);
+    }
+  }
+}
+
+void add_blends(std::string& to) {
+  to +=
+      "\n## Blends\n\nHow `union`, `intersection` and `difference` join two fields; of more than "
+      "two, the first two are joined first.\n";
+  for (const BlendType& type : blend_types()) {
+    to += "\n### " + type.name + "\n\n" + type.doc + "\n";
+    add_parameters(to, type.parameters);
+  }
+}
+
+void add_functions(std::string& to) {
+  to +=
+      "\n## Functions of formulas\n\nBesides `+ - * / ^`, comparisons and `pi`. Angles are in "
+      "radians.\n\n| function | |\n|---|---|\n| `length(a, b)`, `length(a, b, c)` | the length of "
+      "the vector |\n";
+  for (const std::string& name : all_functions()) {
+    if (name == "length") continue;
+    const OperationInfo& info = find_function(name)->info();
+    const bool any_number = arguments_message(name, 5).empty();
+    const char* arguments[] = {"", "a", "a, b", "a, b, c"};
+    to += "| `" + name + "(" + arguments[info.arity] + (any_number ? ", ..." : "") + ")` | " +
+          info.doc + " |\n";
+  }
+}
+
+std::string rule_type_text(RuleParameterType type) {
   switch (type) {
     case RuleParameterType::number:
       return "a number";
     case RuleParameterType::field:
-      return "a field";
     case RuleParameterType::feature:
-      return "a feature or a solid";
+      return "a field";
     case RuleParameterType::influence:
-      return "a formula of u";
+      return "a field or a number";
     case RuleParameterType::fractions:
-      return "a material or a rule";
+      return "a material, or a rule";
     case RuleParameterType::shares:
-      return "{material: number}";
+      return "a number for each material";
     case RuleParameterType::functions:
-      return "{material: field}";
-    case RuleParameterType::values:
-      return "a field, or a list of them";
+      return "a field or a number for each material";
     default:
       return "a list of objects";
   }
 }
 
-std::string rule_rows(const std::vector<RuleParameter>& parameters, const std::string& before) {
-  std::string text;
-  for (const RuleParameter& p : parameters) {
-    const double* standard = std::get_if<double>(&p.default_value);
-    text += row(before + p.name, rule_type_name(p.type) + range_text(p.range) + unit_text(p.unit),
-                p.required ? "**required**"
-                : standard ? short_number(*standard)
-                           : "none",
-                p.doc);
-    text += rule_rows(p.record, before + p.name + "[].");
+void add_rule_parameters(std::string& to, const std::vector<RuleParameter>& infos,
+                         const std::string& prefix) {
+  for (const RuleParameter& p : infos) {
+    std::string name = prefix;
+    for (const std::string& key : keys_of(p, false)) {
+      if (name.size() > prefix.size()) name += "` or `" + prefix;
+      name += key;
+    }
+    const auto* number = std::get_if<double>(&p.default_value);
+    add_row(to, name, accepted_text(rule_type_text(p.type), p.unit, p.range, p.at_least),
+            p.required ? "required"
+            : number   ? number_text(*number)
+                       : "none",
+            p.doc);
+    add_rule_parameters(to, p.record, p.name + "[].");
   }
-  return text;
 }
 
-std::string constructors_text() {
-  std::string text;
-  for (const Group& group : groups) {
-    text += "\n## " + std::string(group.title) + "\n";
-    for (const Constructor& c : constructors()) {
-      if (c.group != group.name) continue;
-      text += "\n### " + c.name + "\n" + c.doc + "\n" + parameter_table(c.parameters);
+void add_rules(std::string& to) {
+  to +=
+      "\n## Fraction rules\n\nIn attributes, `value` stands in place of `material` or "
+      "`fractions`.\n";
+  for (const RuleType& type : fraction_rules()) {
+    if (type.name == "value") continue;
+    const char* uses[] = {" Of fractions only.", " Of attributes only.", ""};
+    to += "\n### " + type.name + "\n\n" + type.doc + uses[size_t(type.use)] + "\n";
+    const RuleParameterType first = type.parameters[0].type;
+    if (first == RuleParameterType::shares || first == RuleParameterType::functions) {
+      to += "\nIts value is " + rule_type_text(first) + ".\n";
+      continue;
     }
+    add_table(to);
+    add_rule_parameters(to, type.parameters, "");
   }
-  return text;
 }
 
 }  // namespace
 
 std::string operations_document() {
   std::string text =
-      "# Operations\n\nMade by `sardf schema --document`. Names are the same in scene files, in "
-      "Python and in Blender.\n";
-  text += constructors_text();
-  text += "\n## Blends\nHow `union`, `intersection` and `difference` join two fields.\n";
-  for (const BlendType& b : blend_types()) {
-    text += "\n### " + b.name + "\n" + b.doc + "\n" + parameter_table(b.parameters);
-  }
-  text += "\n## Fractions\nWhat a solid is made of.\n";
-  for (const RuleType& rule : fraction_rules()) {
-    text += "\n### " + rule.name + "\n" + rule.doc + "\n";
-    if (!rule.parameters.empty()) text += table_head + rule_rows(rule.parameters, "");
-  }
-  text += "\n## Functions of the formula language\n\n| function | |\n|---|---|\n";
-  for (const std::string& name : function_names()) {
-    text += "| `" + name + "` | " + find_function(name)->info().doc + " |\n";
-  }
+      "# Operations\n\nGenerated from the operations themselves by `sardf schema --document`. The "
+      "words are the keys of [scene files](scene_format.md) and the names of Python's "
+      "functions.\n";
+  add_constructors(text);
+  add_blends(text);
+  add_functions(text);
+  add_rules(text);
   return text;
 }
 

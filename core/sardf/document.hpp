@@ -1,12 +1,11 @@
-// docs/operations.md, made from the registries.
+// The reference of all operations as a document, from the registries.
 #pragma once
 
 #include <string>
 
 namespace sardf {
 
-/// Every constructor by group, blend, fraction rule and function of the formula language, with its
-/// parameters, units, ranges and defaults, as Markdown.
+/// docs/operations.md: constructors by group, blends, functions of formulas, fraction rules.
 std::string operations_document();
 
 }  // namespace sardf

@@ -210,6 +210,19 @@ TEST(SceneFile, CutAnywhereGivesAnErrorAndNothingElse) {
   }
 }
 
+TEST(SceneFile, OfEveryExampleIsReadAndWritten) {
+  size_t count = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::string(SARDF_SOURCE_DIR) + "/scenes")) {
+    if (entry.path().extension() != ".json") continue;
+    SCOPED_TRACE(entry.path().string());
+    const SceneDescription scene = read_scene(entry.path());
+    expect_same(scene, parse(scene_text(scene)));
+    ++count;
+  }
+  EXPECT_GT(count, 0u);
+}
+
 class SceneFolder : public testing::Test {
  protected:
   void SetUp() override {

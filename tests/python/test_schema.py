@@ -13,7 +13,24 @@ EXAMPLES = re.findall(
     r"^```json\n(.*?)^```", (ROOT / "docs/scene_format.md").read_text(), re.MULTILINE | re.DOTALL
 )
 # What a schema can see without knowing names, formulas and geometry.
-VISIBLE = ["unknown_key", "unknown_constructor", "unknown_parameter", "missing_parameter", "negative_radius", "radius_as_text", "two_numbers", "axis_name", "unknown_blend", "color", "roughness", "unknown_rule", "feature_with_both", "no_features", "no_materials", "many"]
+VISIBLE = [
+    "unknown_key",
+    "unknown_constructor",
+    "unknown_parameter",
+    "missing_parameter",
+    "negative_radius",
+    "radius_as_text",
+    "two_numbers",
+    "axis_name",
+    "unknown_blend",
+    "color",
+    "roughness",
+    "unknown_rule",
+    "feature_with_both",
+    "no_features",
+    "no_materials",
+    "many",
+]
 
 
 def without_comments(text: str) -> str:

@@ -56,9 +56,9 @@ struct Atlas {
 /// intricate for 60 charts may come as close as 3 texels to themselves.
 ///
 /// Every chart has the same scale: the area of its image is its own area times texels_per_unit².
-/// At most 60 charts, unless creases cut the surface into more pieces than that or it has very many
-/// handles: of a gyroid's wall, six to eight periods need all 60 charts, more need more. The result
-/// does not depend on the number of threads.
+/// At most 60 charts, unless creases alone cut the surface into more pieces, or it has very many
+/// handles, as walls of a lattice with many periods do. Compact charts are halved when that packs
+/// better. The result does not depend on the number of threads.
 ///
 /// Throws Error when the mesh has no faces or no area, an index beyond its vertices, a vertex that
 /// is not finite or a wrong number of normals, when `size` is outside [16, 16384] or `gutter`

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <map>
 
 #include "sardf/error.hpp"
 #include "sardf/mesher_stages.hpp"
@@ -69,22 +70,61 @@ Grid make_grid(const BoundingBox& bounds, const MeshOptions& options) {
   return grid;
 }
 
-// Pieces of surface that touch inside a cell stay apart: programs that merge equal points would
-// join them. Each vertex goes a little towards the middle of its own crossings.
-void separate(const Grid& grid, const Net& net, const CrossingPoints& crossings,
-              Vertices& vertices) {
-  const double apart = 1e-4 * grid.cell;
-  for (uint32_t v = 1; v < net.vertex_count(); ++v) {
-    for (uint32_t w = v; w > 0 && net.cell[w - 1] == net.cell[v]; --w) {
-      if (norm(vertices.at[v] - vertices.at[w - 1]) > apart) continue;
-      for (const uint32_t touching : {v, w - 1}) {
-        const uint32_t begin = net.first_use[touching], end = net.first_use[touching + 1];
-        Vec3 middle{};
-        for (uint32_t i = begin; i < end; ++i) middle = middle + crossings.at[net.uses[i] / 4];
-        middle = (1.0 / (end - begin)) * middle;
-        vertices.at[touching] = vertices.at[touching] + 2e-3 * (middle - vertices.at[touching]);
-      }
+Vec3 middle_of_crossings(const Net& net, const CrossingPoints& crossings, uint32_t vertex) {
+  Vec3 sum{};
+  const uint32_t begin = net.first_use[vertex], end = net.first_use[vertex + 1];
+  for (uint32_t i = begin; i < end; ++i) sum = sum + crossings.at[net.uses[i] / 4];
+  return (1.0 / (end - begin)) * sum;
+}
+
+bool is_in_cell(const Grid& grid, const Index3& cell, const Vec3& point) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (point[axis] < grid.coordinate(axis, cell[axis]) ||
+        point[axis] > grid.coordinate(axis, cell[axis] + 1)) {
+      return false;
     }
+  }
+  return true;
+}
+
+// Vertices at the same place in single precision, or nearly so in the same cell, one of which must
+// lie out of its cell or share it.
+std::vector<uint32_t> touching_vertices(const Grid& grid, const Cells& cells, const Net& net,
+                                        const Vertices& vertices) {
+  const auto rounded = [&](uint32_t v) {
+    const Vec3& p = vertices.at[v];
+    return std::array<float, 3>{float(p[0]), float(p[1]), float(p[2])};
+  };
+  std::map<std::array<float, 3>, int> places;
+  std::vector<uint8_t> touching(net.vertex_count());
+  for (uint32_t v = 0; v < net.vertex_count(); ++v) {
+    if (!is_in_cell(grid, cells.at[net.cell[v]], vertices.at[v])) places[rounded(v)] = 0;
+    for (uint32_t w = v; w > 0 && net.cell[w - 1] == net.cell[v]; --w) {
+      if (norm(vertices.at[v] - vertices.at[w - 1]) > 1e-4 * grid.cell) continue;
+      touching[v] = touching[w - 1] = 1;
+    }
+  }
+  const auto place_of = [&](uint32_t v) {
+    return places.empty() ? places.end() : places.find(rounded(v));
+  };
+  for (uint32_t v = 0; v < net.vertex_count(); ++v) {
+    if (const auto place = place_of(v); place != places.end()) ++place->second;
+  }
+  std::erase_if(places, [](const auto& place) { return place.second < 2; });
+  std::vector<uint32_t> result;
+  for (uint32_t v = 0; v < net.vertex_count(); ++v) {
+    if (touching[v] || place_of(v) != places.end()) result.push_back(v);
+  }
+  return result;
+}
+
+// Pieces of surface that touch stay apart: programs that merge equal points would join them. Each
+// vertex goes a little towards the middle of its own crossings.
+void separate(const Grid& grid, const Cells& cells, const Net& net, const CrossingPoints& crossings,
+              Vertices& vertices) {
+  for (const uint32_t v : touching_vertices(grid, cells, net, vertices)) {
+    const Vec3 middle = middle_of_crossings(net, crossings, v);
+    vertices.at[v] = vertices.at[v] + 2e-3 * (middle - vertices.at[v]);
   }
 }
 
@@ -122,17 +162,15 @@ Mesh make_mesh(const Evaluator& solid, const BoundingBox& bounds, const MeshOpti
   Net net = build_net(cells, grid, work);
   work.stage(0.7);
   const CrossingPoints crossings = find_crossings(field, grid, cells.crossings, work);
-  cells = {};
+  cells.crossings = {};
   work.stage(0.85);
   Vertices vertices = place_vertices(field, grid, net, crossings, work);
-  Mesh mesh;
-  mesh.corner_normals.resize(4 * net.faces.size());
-  for (uint32_t use = 0; use < net.uses.size(); ++use) {
-    mesh.corner_normals[use] = vertices.normal[net.faces[use / 4][use % 4]];
-  }
+  work.stage(0.97);
+  place_features(field, grid, net, crossings, vertices, work);
+  separate(grid, cells, net, crossings, vertices);
   work.stage(1);
-  place_features(field, grid, net, crossings, vertices, mesh.corner_normals, work);
-  separate(grid, net, crossings, vertices);
+  Mesh mesh;
+  mesh.corner_normals = find_normals(field, grid, net, crossings, vertices, work);
   mesh.creases = find_creases(net, vertices, mesh.corner_normals);
   mesh.vertices = std::move(vertices.at);
   mesh.faces = std::move(net.faces);

@@ -1,5 +1,5 @@
-// Shared by the stages of the mesher, in their order: blocks, cells, crossings, vertices, features,
-// creases. Private to core/sardf/mesher*.cpp.
+// Shared by the stages of the mesher, in their order: blocks, cells, net, crossings, vertices,
+// features, unfold, normals, creases. Private to core/sardf/mesher*.cpp.
 //
 // Corner c of a cell lies at (c & 1, c >> 1 & 1, c >> 2 & 1). An edge along axis d, with the other
 // two axes e = (d + 1) % 3 and g = (d + 2) % 3, is number 4 d + (side in e) + 2 (side in g).
@@ -108,16 +108,18 @@ CrossingPoints find_crossings(const Field& field, const Grid& grid,
                               const std::vector<Crossing>& crossings, Work& work);
 Vertices place_vertices(const Field& field, const Grid& grid, const Net& net,
                         const CrossingPoints& crossings, Work& work);
-/// Moves the sharp vertices onto edges and corners; `corner_normals` (one for each use) come with
-/// the vertices' normals and get those of the sharp ones.
+/// Moves the sharp vertices onto edges and corners.
 void place_features(const Field& field, const Grid& grid, const Net& net,
-                    const CrossingPoints& crossings, Vertices& vertices,
-                    std::vector<Vec3>& corner_normals, Work& work);
+                    const CrossingPoints& crossings, Vertices& vertices, Work& work);
 /// Of each face that turned over or shrank to nothing, because sharp vertices lie outside of their
 /// room, the vertex that lies farthest outside.
 std::vector<uint32_t> vertices_to_take_back(const Grid& grid, const Net& net,
                                             const CrossingPoints& crossings,
                                             const Vertices& vertices);
+/// Unit outward normals, one for each use; 0 where there is none.
+std::vector<Vec3> find_normals(const Field& field, const Grid& grid, const Net& net,
+                               const CrossingPoints& crossings, const Vertices& vertices,
+                               Work& work);
 std::vector<std::array<uint32_t, 2>> find_creases(const Net& net, const Vertices& vertices,
                                                   const std::vector<Vec3>& corner_normals);
 

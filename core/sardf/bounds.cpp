@@ -175,12 +175,13 @@ class Search {
   double hull_diagonal_ = 0;
 };
 
-// Throws unless what sticks out of the stated box is proven empty.
+// Throws unless what sticks out of the stated box, by more than the padding, is proven empty.
 void check_stated(const Search& search, BoundingBox& bounds, const BoundingBox& stated) {
   for (int face = 0; face < 6; ++face) {
     const int axis = face / 2;
     const bool upper = face % 2 == 1;
-    const double limit = upper ? stated.hi[axis] : stated.lo[axis];
+    const double slack = (upper ? padding : -padding) * bounds.diagonal();
+    const double limit = (upper ? stated.hi[axis] : stated.lo[axis]) + slack;
     double& reached = upper ? bounds.hi[axis] : bounds.lo[axis];
     if (upper ? reached <= limit : reached >= limit) continue;
     BoundingBox outside = bounds;
@@ -188,7 +189,7 @@ void check_stated(const Search& search, BoundingBox& bounds, const BoundingBox& 
     if (!search.is_empty(outside, 20 * proof_boxes)) {
       throw Error(std::string("the solid reaches out of its stated bounds: ") + "xyz"[axis] +
                   (upper ? " goes up to " : " goes down to ") + short_number(reached, 6) +
-                  ", stated is " + short_number(limit, 6));
+                  ", stated is " + short_number(limit - slack, 6));
     }
     reached = limit;
   }

@@ -41,6 +41,12 @@ OutputFile::~OutputFile() {
   fs::remove(temporary_, ignored);
 }
 
+void OutputFile::write(const std::string& bytes) {
+  errno = 0;
+  stream_.write(bytes.data(), std::streamsize(bytes.size()));
+  if (!stream_) fail(errno);
+}
+
 void OutputFile::commit() {
   errno = 0;
   stream_.close();

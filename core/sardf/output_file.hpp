@@ -15,10 +15,7 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  std::ostream& stream() { return stream_; }
-  void write(const std::string& bytes) {
-    stream_.write(bytes.data(), std::streamsize(bytes.size()));
-  }
+  void write(const std::string& bytes);
   void commit();
 
  private:

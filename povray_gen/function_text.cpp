@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "povray_gen/guards.hpp"
 #include "sardf/error.hpp"
 
 namespace sardf::povray {
@@ -27,6 +28,8 @@ class Nodes {
 
   const std::vector<const Node*>& order() const { return order_; }
   int at(const Expression& expression) const { return position_.at(expression.get()); }
+
+  int uses(const Expression& expression) const { return uses_[at(expression)]; }
 
   // Whether nothing below the node is used but by the node and what is below it.
   bool is_private(int node) const {
@@ -117,10 +120,41 @@ int FunctionWriter::add_terms(Terms& terms, const Expression& root) {
     } else {
       std::vector<int> inputs;
       for (const Expression& input : node->arguments()) inputs.push_back(term[nodes.at(input)]);
-      term[i] = add_call(terms, *node->operation, inputs);
+      term[i] = -1;
+      for (int costly = node->arity - 1; costly >= 0 && term[i] < 0; --costly) {
+        if (nodes.uses(node->inputs[costly]) > 1) continue;
+        term[i] = add_guarded_call(terms, *node, inputs, costly,
+                                   [&](const Expression& e) { return term[nodes.at(e)]; });
+      }
+      if (term[i] < 0) term[i] = add_call(terms, *node->operation, inputs);
     }
   }
   return term[n - 1];
+}
+
+// f(a, b) lies between a and f(a, B) where B is no less than b: if these two are equal, f(a, b) is
+// a, and b need not be evaluated. -1 where that gains nothing.
+int FunctionWriter::add_guarded_call(Terms& terms, const Node& node, std::span<const int> inputs,
+                                     int costly,
+                                     const std::function<int(const Expression&)>& term_of) {
+  const Keeps keeps = keeps_other(*node.operation, costly);
+  if (keeps == Keeps::nothing) return -1;
+  const Expression bound = cheap_upper_bound(*node.inputs[costly]);
+  if (!bound) return -1;
+  std::vector<int> bound_inputs;
+  for (const Expression& input : bound->arguments()) {
+    const bool coordinate = input->type == Node::Type::coordinate;
+    bound_inputs.push_back(coordinate ? terms.input(input->axis) : term_of(input));
+    if (bound_inputs.back() < 0) return -1;  // inside a field that is called by its name
+  }
+  std::vector<int> cheap(inputs.begin(), inputs.end());
+  cheap[costly] = add_call(terms, *bound->operation, bound_inputs);
+  const int other = inputs[1 - costly];
+  const int extreme = add_call(terms, *node.operation, cheap);
+  const int full = add_call(terms, *node.operation, inputs);
+  const int change = keeps == Keeps::other_or_more ? terms.apply("-", {other, extreme})
+                                                   : terms.apply("-", {extreme, other});
+  return terms.select(change, full, other, true);
 }
 
 int FunctionWriter::add_call(Terms& terms, const Operation& operation,

@@ -1,6 +1,7 @@
 // Expression graphs as readable POV-Ray functions in which nothing is evaluated twice.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -20,8 +21,10 @@ struct NamedExpression {
 
 /// Declares one function of x, y, z for each named expression, positive inside as everywhere in
 /// our code. An operation becomes a function of its inputs, one for equal parameters, unless it is
-/// as short as a call of it would be. A function calls that of another named expression where
-/// nothing inside that one is also needed outside of it; else it computes the shared parts once.
+/// as short as a call of it would be; where a cheap bound shows that a costly input of a union or
+/// difference does not count, the input is not evaluated. A function calls that of another named
+/// expression where nothing inside that one is also needed outside of it; else it computes the
+/// shared parts once.
 class FunctionWriter {
  public:
   explicit FunctionWriter(Names& names) : names_(names), printer_(names) {}
@@ -39,6 +42,8 @@ class FunctionWriter {
 
   std::string declare_function(const std::string& name, const Expression& expression);
   int add_terms(Terms& terms, const Expression& root);
+  int add_guarded_call(Terms& terms, const Node& node, std::span<const int> inputs, int costly,
+                       const std::function<int(const Expression&)>& term_of);
   int add_call(Terms& terms, const Operation& operation, std::span<const int> inputs);
 
   Names& names_;

@@ -176,6 +176,33 @@ TEST(PovrayFunctions, EvaluateACostlyBranchOnlyWhereItIsTaken) {
   EXPECT_THAT(text, HasSubstr("sqrt("));
 }
 
+TEST(PovrayFunctions, SkipACostlyPrimitiveWhereItCannotCount) {
+  Ellipsoid flat;
+  flat.center = {0.5, 0, 0};
+  flat.radii = {1.5, 1, 0.5};
+  const Expression costly = apply_to(flat, {plus(X, Y), Y, Z});
+  const auto blended = [&]<class Blend>(const Blend& blend) {
+    const Expression ball = sphere_at(-1);
+    return std::vector<NamedExpression>{
+        {"second", apply_to(UnionOf<Blend>(blend), {ball, costly})},
+        {"first", apply_to(UnionOf<Blend>(blend), {costly, ball})},
+        {"cut", apply_to(DifferenceOf<Blend>(blend), {ball, costly})},
+        {"common", apply_to(IntersectionOf<Blend>(blend), {ball, costly})}};
+  };
+  const std::regex guarded("select\\([^}]*test_ellipsoid_1\\(");
+  const auto guards_in = [&](const std::vector<NamedExpression>& fields) {
+    const std::string text = written(fields).text;
+    return std::distance(std::sregex_iterator(text.begin(), text.end(), guarded), {});
+  };
+  EXPECT_EQ(guards_in(blended(Sardf{.radius = 0.5})), 3);
+  EXPECT_EQ(guards_in(blended(MinMax())), 3);
+  EXPECT_EQ(guards_in(blended(RFunction())), 0) << "every value counts";
+  expect_same_values(blended(Sardf{.radius = 0.5}), 200);
+  expect_same_values(blended(SardfC1{.radius = 0.5}), 200);
+  expect_same_values(blended(MinMax()), 200);
+  expect_same_values(blended(Smooth{.k = 0.5}), 200);
+}
+
 TEST(PovrayFunctions, SurviveDeepTrees) {
   Expression left = X, right = X, ladder = X, formula = X;
   for (int k = 0; k < 10000; ++k) {

@@ -38,11 +38,7 @@ void evaluate_samples(const Field& field, const Grid& grid, const Index3& first,
       points.xyz[2][i] = T(grid.coordinate(2, first[2] + s / (side * side)));
     }
     field.evaluate(points, size_t(count));
-    for (int i = 0; i < count; ++i) {
-      // The sign must survive the rounding to float: 0 is inside.
-      const float rounded = float(points.value[i]);
-      values[begin + i] = points.value[i] < 0 && rounded == 0 ? -1e-38f : rounded;
-    }
+    for (int i = 0; i < count; ++i) values[begin + i] = float(points.value[i]);
   }
 }
 

@@ -73,10 +73,31 @@ TEST(Mesher, ManifoldWhereTheGridCannotResolveTheSolid) {
       const Mesh mesh = mesh_of(gyroid(frequency, thickness), cube(10), 24);
       EXPECT_GT(mesh.faces.size(), 3000u);
       EXPECT_TRUE(count(mesh).closed());
-      std::set<Vec3> places(mesh.vertices.begin(), mesh.vertices.end());
-      EXPECT_EQ(places.size(), mesh.vertices.size()) << "vertices at the same place";
     }
   }
+}
+
+// Vertices of two cells on the same tip of the solid.
+TEST(Mesher, NoTwoVerticesAtTheSamePlace) {
+  const Mesh mesh = mesh_of(gyroid(4.3, 1.0), cube(10), 32);
+  std::set<std::array<float, 3>> places;
+  for (const Vec3& p : mesh.vertices) places.insert({float(p[0]), float(p[1]), float(p[2])});
+  EXPECT_EQ(places.size(), mesh.vertices.size());
+}
+
+// A ball whose field is three times as steep as it claims to be: blocks with surface are dropped.
+struct WrongBall : Sphere {
+  static constexpr const char* name = "wrong_ball";
+  template <class T>
+  T eval(T x, T y, T z) const {
+    return T(3.0) * (T(1.0) - length(x, y, z));
+  }
+};
+
+TEST(Mesher, BlocksNextToCrossedEdgesAreSampledWhateverWasProven) {
+  const Mesh mesh = mesh_of(at_point(WrongBall()), padded({1, 1, 1}), 128);
+  EXPECT_TRUE(count(mesh).closed());
+  EXPECT_EQ(count(mesh).euler, 2);
 }
 
 TEST(Mesher, VolumeConvergesToTheExactOne) {

@@ -60,7 +60,7 @@ struct Polygon : PlaneSolid {
 
   template <class T>
   T eval(T x, T y) const {
-    T best_squared(0.0), best_line(0.0), parity(1.0);
+    T best_squared(0.0), best_line(0.0), at_corner(0.0), parity(1.0);
     const size_t n = vertices.size();
     for (size_t i = 0; i < n; ++i) {
       const Vec2 &a = vertices[i], &b = vertices[i + 1 < n ? i + 1 : 0];
@@ -71,15 +71,15 @@ struct Polygon : PlaneSolid {
       const T edge_squared = square(px - T(ex) * t) + square(py - T(ey) * t);
       const T line =
           T(turn_ * ex / std::sqrt(squared)) * py - T(turn_ * ey / std::sqrt(squared)) * px;
-      // Corners are told from lines by a magnitude that no line's distance has: the sign is 0
-      // there.
-      const T signed_line = select(along > T(0.0) && along < T(1.0), line, T(0.0));
+      const T corner = select(along > T(0.0) && along < T(1.0), T(0.0), T(1.0));
       if (i == 0) {
         best_squared = edge_squared;
-        best_line = signed_line;
+        best_line = line;
+        at_corner = corner;
       } else {
         const auto nearer = edge_squared < best_squared;
-        best_line = select(nearer, signed_line, best_line);
+        best_line = select(nearer, line, best_line);
+        at_corner = select(nearer, corner, at_corner);
         best_squared = select(nearer, edge_squared, best_squared);
       }
       const double lower = std::min(a[1], b[1]), upper = std::max(a[1], b[1]);
@@ -90,8 +90,7 @@ struct Polygon : PlaneSolid {
         parity = select(crosses, -parity, parity);
       }
     }
-    const auto on_line = best_line > T(0.0) || best_line < T(0.0);
-    return shortcut(on_line, best_line, [&] { return -parity * sqrt(best_squared); });
+    return shortcut(at_corner < T(0.5), best_line, [&] { return -parity * sqrt(best_squared); });
   }
 
  private:

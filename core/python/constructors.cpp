@@ -88,6 +88,7 @@ void bind_constructors(py::module_& m) {
   m.attr("x") = Field::coordinate(0);
   m.attr("y") = Field::coordinate(1);
   m.attr("z") = Field::coordinate(2);
+  m.def("_fail", [](const std::string& message) { throw Error(message); });
   m.def(
       "_set_blend",
       [](const std::shared_ptr<Blend>& blend) {

@@ -6,9 +6,8 @@ from pathlib import Path
 import manifold3d
 import numpy as np
 import pytest
-import trimesh
-
 import sardf
+import trimesh
 
 ROOT = Path(__file__).resolve().parents[2]
 SCENES = sorted((ROOT / "scenes").glob("*.json"))
@@ -33,7 +32,9 @@ def triangles(mesh):
     """Triangles of the quads, those of a repeated index left out."""
     faces = mesh.faces
     both = np.concatenate([faces[:, (0, 1, 2)], faces[:, (0, 2, 3)]])
-    return both[(both[:, 0] != both[:, 1]) & (both[:, 1] != both[:, 2]) & (both[:, 0] != both[:, 2])]
+    return both[
+        (both[:, 0] != both[:, 1]) & (both[:, 1] != both[:, 2]) & (both[:, 0] != both[:, 2])
+    ]
 
 
 def cell_of(scene):
@@ -90,9 +91,10 @@ def test_euler_characteristic(scene, surface):
         assert body.euler_number == EULER[name]
     else:
         finer = loaded.mesh(resolution=2 * RESOLUTION, size=0)
-        assert body.euler_number == trimesh.Trimesh(
-            finer.vertices, triangles(finer), process=False
-        ).euler_number
+        assert (
+            body.euler_number
+            == trimesh.Trimesh(finer.vertices, triangles(finer), process=False).euler_number
+        )
 
 
 def test_vertices_lie_on_the_surface(scene, surface):

@@ -17,7 +17,7 @@ class blend:
 
     def __init__(self, **chosen):
         if len(chosen) != 1:
-            raise _core.Error(f"blend takes one keyword of {', '.join(_core._blends)}")
+            _core._fail(f"blend takes one keyword of {', '.join(_core._blends)}")
         name, value = next(iter(chosen.items()))
         if name not in _core._blends:
             raise _core.Error(

@@ -1,0 +1,87 @@
+"""Blender's pictures against POV-Ray's on every scene; and that the comparison can fail."""
+
+import json
+import subprocess
+from pathlib import Path
+
+import pytest
+import sardf
+
+ROOT = Path(__file__).resolve().parents[2]
+SARDF = ROOT / ".venv/bin/sardf"
+SCENES = sorted(path.stem for path in (ROOT / "scenes").glob("*.json"))
+LATTICES = ["gyroid_sandwich"]
+BLENDERS = ["blender", str(ROOT / ".venv-bpy/bin/python")]
+
+
+def compare(output, scenes, *options, blenders=BLENDERS):
+    """Runs `sardf compare` at 320 × 240; its exit code and numbers."""
+    command = [SARDF, "compare", *scenes, "-o", output, "--size", "320x240"]
+    for blender in blenders:
+        command += ["--blender", blender]
+    done = subprocess.run(
+        [str(word) for word in [*command, *options]], cwd=ROOT, capture_output=True, text=True
+    )
+    assert done.returncode in (0, 1), done.stderr
+    return done, json.loads((Path(output) / "numbers.json").read_text())
+
+
+@pytest.fixture(scope="module")
+def numbers(tmp_path_factory):
+    output = tmp_path_factory.mktemp("compare")
+    lattices = [word for name in LATTICES for word in ("--lattice", name)]
+    scenes = [ROOT / "scenes" / f"{name}.json" for name in SCENES]
+    return compare(output, scenes, *lattices)[1]
+
+
+@pytest.mark.parametrize("blender", range(len(BLENDERS)))
+@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.timeout(1800)
+def test_pictures_agree(numbers, scene, blender):
+    verdict = list(numbers[scene].values())[blender]
+    missed = [c for c in verdict["criteria"] if not c["holds"]]
+    assert verdict["passes"], missed
+
+
+# A block cut by a ball, coloured by the distance that the blend gives on the cut: R shows.
+SHOWING_R = """{"sardf": 1, "title": "showing R", "parameters": {"R": 1.5}, "fields": {
+  "block": {"box": {"size": [8, 6, 4]}}, "ball": {"sphere": {"radius": 2.5}},
+  "part": {"difference": {"of": ["block", "ball"], "blend": {"sardf": "=R"}}}},
+  "solid": "block",
+  "materials": {"red": {"color": "#d03020"}, "blue": {"color": "#2040c0"}},
+  "fractions": {"inverse_distance": {"features": [
+    {"at": {"boundary": {"solid": "part"}}, "material": "red", "exponent": 2},
+    {"at": {"point": {"at": [0, 0, 0]}}, "material": "blue", "exponent": 2}]}},
+  "sections": [{"remove": {"half_space": {"normal": [0, -1, 0]}}}]}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('"R": 1.5', '"R": 1'),
+        ('"blue", "exponent": 2', '"blue", "exponent": 1.5'),
+        ("#d03020", "#d03828"),
+    ],
+    ids=["R", "exponent", "color"],
+)
+def test_a_changed_scene_is_noticed(tmp_path, old, new):
+    assert old in SHOWING_R
+    scene, changed = tmp_path / "scene.json", tmp_path / "changed.json"
+    scene.write_text(SHOWING_R)
+    changed.write_text(SHOWING_R.replace(old, new))
+    options = ("--reference", changed, "--texture", "1024")
+    done, _ = compare(tmp_path / "out", [scene], *options, blenders=["blender"])
+    assert done.returncode == 1, done.stdout
+    assert "asked for" in done.stderr
+
+
+def test_a_camera_moved_by_a_pixel_is_noticed(tmp_path):
+    scene = ROOT / "scenes/two_ellipsoids.json"
+    camera = sardf.load(str(scene)).camera(width=320, height=240)
+    camera["shift_x"] += 1 / 320
+    (tmp_path / "camera.json").write_text(json.dumps(camera))
+    options = ("--reference-camera", tmp_path / "camera.json", "--texture", "512")
+    done, _ = compare(tmp_path / "out", [scene], *options, blenders=["blender"])
+    assert done.returncode == 1, done.stdout
+    assert "asked for" in done.stderr

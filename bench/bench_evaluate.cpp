@@ -3,6 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "hand_loops.hpp"
+#include "register.hpp"
 #include "sardf/constructor.hpp"
 #include "sardf/constructor_of.hpp"
 #include "sardf/ops.hpp"
@@ -128,7 +129,9 @@ void register_loops(const std::string& set, const HandLoops& loops) {
   }
 }
 
-const bool registered = [] {
+}  // namespace
+
+void register_evaluation() {
   for (const Shape which : {Shape::spheres, Shape::block, Shape::blended_block}) {
     const std::string shape = "/" + name(which);
     benchmark::RegisterBenchmark(("evaluate_float" + shape).c_str(), evaluate_shape<float>, which);
@@ -147,8 +150,6 @@ const bool registered = [] {
     benchmark::RegisterBenchmark(("operation/" + std::string(Op::name)).c_str(), run_operation,
                                  sample<Op>());
   });
-  return true;
-}();
+}
 
-}  // namespace
 }  // namespace sardf::bench

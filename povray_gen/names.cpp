@@ -9,6 +9,8 @@ namespace sardf::povray {
 
 namespace {
 
+constexpr size_t longest_prefix = 16;
+
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -29,8 +31,11 @@ std::string identifier(const std::string& text) {
 }  // namespace
 
 Names::Names(const std::string& title) : prefix_(identifier(title)) {
-  // POV-Ray cuts identifiers after 40 characters or more, depending on its version.
-  prefix_ = identifier(prefix_.substr(0, 24));
+  // It stands in front of every name: as many whole words as stay readable.
+  if (prefix_.size() > longest_prefix) {
+    const size_t end = prefix_.rfind('_', longest_prefix);
+    prefix_.resize(end == std::string::npos ? longest_prefix : end);
+  }
   if (prefix_.empty() || !is_letter(prefix_[0])) prefix_ = "part" + prefix_;
 }
 

@@ -133,7 +133,7 @@ void render(const std::string& scene, const std::string& image, const RunOptions
   if (!complaint.empty()) throw Error("POV-Ray: " + complaint, scene);
   if (!fs::is_regular_file(temporary.path)) throw Error("POV-Ray wrote no picture", scene);
   if (check) complaint = check(temporary.path.string());
-  if (!complaint.empty()) throw Error("the picture that POV-Ray rendered " + complaint, scene);
+  if (!complaint.empty()) throw Error("POV-Ray: " + complaint, scene);
   std::error_code error;
   fs::rename(temporary.path, target, error);
   if (error) {

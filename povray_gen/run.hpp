@@ -32,8 +32,8 @@ struct RunOptions {
 /// Throws Error: POV-Ray missing (it says how to install it), its parse errors and warnings, a
 /// max_gradient that is too small ("may contain holes"), the timeout, an unwritable picture, and
 /// what `check` finds. `check` gets the path of the finished picture before it is renamed and
-/// returns a complaint, or "" if all is well: POV-Ray itself calls an empty picture a success.
-/// Throws Cancelled when the progress says so; POV-Ray is then stopped.
+/// returns a complaint, a sentence, or "" if all is well: POV-Ray itself calls an empty picture a
+/// success. Throws Cancelled when the progress says so; POV-Ray is then stopped.
 void render(const std::string& scene, const std::string& image, const RunOptions& options,
             const std::function<std::string(const std::string&)>& check = {});
 

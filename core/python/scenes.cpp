@@ -128,6 +128,9 @@ void bind_scenes(py::module_& m) {
       .def_property_readonly("materials", &Scene::material_names, "Names, in order.")
       .def_property_readonly("solid", [](const Scene& s) { return s.description().solid; })
       .def_property_readonly(
+          "drawn", [](const Scene& s) { return Field(s.drawn(), {}, nullptr); },
+          "The solid with its sections cut away.")
+      .def_property_readonly(
           "bounds", [](const Scene& s) { return py::make_tuple(s.bounds().lo, s.bounds().hi); },
           "Certified (lo, hi): outside them the solid is proven empty.")
       .def_property_readonly("section_count",

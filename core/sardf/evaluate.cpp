@@ -7,6 +7,8 @@
 #include <atomic>
 #include <mutex>
 
+#include "sardf/kernels.hpp"
+
 namespace sardf {
 
 namespace {
@@ -62,10 +64,16 @@ void evaluate_block(const Tape& tape, const T* const* xyz, size_t n, T* const* o
   }
 }
 
-// A branch that is not taken has the partial 0; its gradient may be NaN and must not count.
-template <class T>
-void accumulate(const T* by, const T* inner, T* outer, size_t n) {
-  for (size_t i = 0; i < n; ++i) outer[i] += by[i] == 0 ? T(0) : by[i] * inner[i];
+void chain(const float* by, const float* inner, float* outer, size_t n, bool add) {
+  static const ChainKernel kernel = chain_kernel();
+  kernel(by, inner, outer, n, add);
+}
+void chain(const double* by, const double* inner, double* outer, size_t n, bool add) {
+  for (size_t i = 0; i < n; ++i) {
+    // A branch that is not taken has the partial 0; its gradient may be NaN and must not count.
+    const double term = !inner ? by[i] : by[i] == 0 ? 0 : by[i] * inner[i];
+    outer[i] = add ? outer[i] + term : term;
+  }
 }
 
 template <class T>
@@ -78,28 +86,35 @@ void gradient_of_block(const Tape& tape, const T* const* xyz, size_t n, T* out,
   const auto slope = [&](uint32_t reg, int axis) {
     return registers + registers_end + (3 * size_t(reg) + axis) * block_size;
   };
+  // Coordinates and constants come first; their slopes are 1 and 0 and are not stored.
+  const uint32_t first_stored = uint32_t(3 + tape.constants().size());
   load(tape, xyz, n, registers);
-  for (uint32_t reg = 0; reg < 3; ++reg) {
-    for (int axis = 0; axis < 3; ++axis) std::fill_n(slope(reg, axis), m, T(int(reg) == axis));
-  }
-  for (const Tape::Constant& c : tape.constants()) {
-    for (int axis = 0; axis < 3; ++axis) std::fill_n(slope(c.reg, axis), m, T(0));
-  }
   for (const Instruction& i : tape.instructions()) {
     std::array<const T*, max_arity> in;
     for (size_t k = 0; k < in.size(); ++k) in[k] = registers + i.in[k] * block_size;
     run(i, in.data(), registers + i.out * block_size, by, m);
+    const int arity = i.operation->info().arity;
     for (int axis = 0; axis < 3; ++axis) {
       T* to = slope(i.out, axis);
-      std::fill_n(to, m, T(0));
-      for (int k = 0; k < i.operation->info().arity; ++k) {
-        if (i.in[k] >= 3 || int(i.in[k]) == axis) accumulate(by[k], slope(i.in[k], axis), to, m);
+      bool add = false;
+      for (int k = 0; k < arity; ++k) {
+        const bool is_stored = i.in[k] >= first_stored;
+        if (!is_stored && int(i.in[k]) != axis) continue;
+        chain(by[k], is_stored ? slope(i.in[k], axis) : nullptr, to, m, add);
+        add = true;
       }
+      if (!add) std::fill_n(to, m, T(0));
     }
   }
   const uint32_t result = tape.outputs()[0];
   if (out) std::copy_n(registers + result * block_size, n, out);
-  for (int axis = 0; axis < 3; ++axis) std::copy_n(slope(result, axis), n, gradient[axis]);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (result >= first_stored) {
+      std::copy_n(slope(result, axis), n, gradient[axis]);
+    } else {
+      std::fill_n(gradient[axis], n, T(int(result) == axis));
+    }
+  }
 }
 
 // Splits n points into blocks over all threads; work(first, count) for each.

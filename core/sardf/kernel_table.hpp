@@ -23,5 +23,7 @@ KernelTable kernel_table() {
 const KernelTable& baseline_kernels();
 const KernelTable& avx2_kernels();
 const KernelTable& avx512_kernels();
+ChainKernel avx2_chain();
+ChainKernel avx512_chain();
 
 }  // namespace sardf

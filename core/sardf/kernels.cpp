@@ -50,6 +50,14 @@ std::string instruction_set_name(InstructionSet set) {
   }
 }
 
+ChainKernel chain_kernel() {
+#if defined(SARDF_X86)
+  if (instruction_set() == InstructionSet::avx512) return avx512_chain();
+  if (instruction_set() == InstructionSet::avx2) return avx2_chain();
+#endif
+  return &chain_term<Baseline>;
+}
+
 const Kernels* listed_kernels(InstructionSet set, const std::string& operation) {
   const KernelTable* table = &baseline_kernels();
 #if defined(SARDF_X86)

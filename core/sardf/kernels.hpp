@@ -57,6 +57,28 @@ struct KernelsOf {
   static constexpr Kernels table{&value, &partials};
 };
 
+/// One term of the chain rule: outer = by * inner, or outer += by * inner, for n points, n a
+/// multiple of 16. A `by` of 0 makes the term 0 whatever `inner` is, since the gradient of a branch
+/// that is not taken may be NaN. `inner` nullptr stands for ones.
+using ChainKernel = void (*)(const float* by, const float* inner, float* outer, size_t n, bool add);
+
+template <class Isa>
+void chain_term(const float* by, const float* inner, float* outer, size_t n, bool add) {
+  using L = Lanes<Isa>;
+  for (size_t i = 0; i < n; i += L::width) {
+    const L factor = L::load(by + i);
+    L term = factor;
+    if (inner) {
+      const auto is_zero = factor <= L(0.0) && factor >= L(0.0);
+      term = select(is_zero, L(0.0), factor * L::load(inner + i));
+    }
+    (add ? L::load(outer + i) + term : term).store(outer + i);
+  }
+}
+
+/// The one that this machine runs.
+ChainKernel chain_kernel();
+
 /// Kernels of a listed operation for an instruction set; nullptr where this build has none or the
 /// operation is not in the list.
 const Kernels* listed_kernels(InstructionSet set, const std::string& operation);

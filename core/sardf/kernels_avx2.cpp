@@ -7,4 +7,6 @@ const KernelTable& avx2_kernels() {
   return table;
 }
 
+ChainKernel avx2_chain() { return &chain_term<Avx2>; }
+
 }  // namespace sardf

@@ -7,4 +7,6 @@ const KernelTable& avx512_kernels() {
   return table;
 }
 
+ChainKernel avx512_chain() { return &chain_term<Avx512>; }
+
 }  // namespace sardf

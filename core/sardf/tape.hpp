@@ -15,8 +15,8 @@ struct Instruction {
   uint32_t out;
 };
 
-/// Registers 0, 1, 2 hold x, y, z; constants have registers of their own that are filled once; the
-/// others are shared by values whose lives do not overlap.
+/// Registers 0, 1, 2 hold x, y, z; then come the constants', which are filled once; the others are
+/// shared by values whose lives do not overlap.
 class Tape {
  public:
   Tape() = default;

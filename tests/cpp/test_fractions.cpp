@@ -156,6 +156,11 @@ TEST(Fractions, TakeInfluencesThatDependOnTheDistance) {
   const auto value = lower(make_fractions("inverse_distance", {steep}), {three, 1.0, 1, {}});
   EXPECT_NEAR(at(value, {0.1, 1, 0})[0], 0.2036785557190951, 1e-14);
   EXPECT_NEAR(at(value, {1e5, 1, 0})[0], 0.5 * std::exp(-1), 1e-14);
+  // Both influences overflow here; their ratio is e^-20.
+  const std::vector<Record> huge{feature(x, of("a"), 1, formula("exp(60*u)", {{"u", x}})),
+                                 feature(y, of("b"), 1, formula("2*exp(59*u)", {{"u", y}}))};
+  const auto shares = lower(make_fractions("inverse_distance", {huge}), three, 1.0);
+  EXPECT_NEAR(at(shares, {20, 20, 0})[0], 2 * std::exp(-20), 1e-20);
 }
 
 // The part of section 6.2 with four grooved pins on a plate.

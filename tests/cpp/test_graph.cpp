@@ -63,6 +63,24 @@ TEST(Graph, RegistersAreReused) {
   EXPECT_LT(Evaluator(chain).tape().registers(), 10u);
 }
 
+TEST(Graph, GradientsOfCoordinatesAndConstants) {
+  const double at[3] = {2, 3, 4};
+  const auto gradient = [&](const Expression& of) {
+    Vec3 out;
+    double value;
+    Evaluator(of).gradients(at, 1, &value, out.data());
+    EXPECT_EQ(value, Evaluator(of).value({2, 3, 4}));
+    return out;
+  };
+  EXPECT_EQ(gradient(y), (Vec3{0, 1, 0}));
+  EXPECT_EQ(gradient(constant(5)), (Vec3{0, 0, 0}));
+  EXPECT_EQ(gradient(x * constant(5)), (Vec3{5, 0, 0}));
+  EXPECT_EQ(gradient(x * x + y * z), (Vec3{4, 4, 3}));
+  // A branch that is not taken does not count, whatever its gradient is.
+  const Expression undefined = sardf::length(x - constant(2), y - constant(3));
+  EXPECT_EQ(gradient(max(undefined, z)), (Vec3{0, 0, 1}));
+}
+
 TEST(Graph, SubstitutionKeepsSharing) {
   const Expression part = x * y;
   const std::vector<Expression> both{part + z, part - z};

@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "sardf/arithmetic.hpp"
 #include "sardf/constructor.hpp"
 #include "sardf/constructor_of.hpp"
+#include "sardf/document.hpp"
 #include "sardf/evaluate.hpp"
+#include "sardf/scene_file.hpp"
 
 namespace sardf {
 namespace {
@@ -112,6 +115,34 @@ TEST_F(MadeUpOperation, FunctionIsAWordOfFormulas) {
   EXPECT_TRUE(bound.contains(std::sin(1)));
   EXPECT_LE(bound.hi, 1);
   EXPECT_THROW(add_function(make_operation(Wobble{})), Error);
+}
+
+TEST_F(MadeUpOperation, IsAKeyOfSceneFiles) {
+  const SceneDescription scene = parse_scene(R"json({
+    "sardf": 1,
+    "fields": {"fruit": {"pear": {"radius": 2, "center": [1, 0, 0], "taper": 0.5}},
+               "bitten": "=wobble(fruit, x)"},
+    "solid": "fruit"
+})json",
+                                             "pear.json");
+  EXPECT_DOUBLE_EQ(Evaluator(scene.solid.expression()).value(at_), value);
+  EXPECT_EQ(scene.solid.expression(),
+            parse_scene(scene_text(scene), "again.json").solid.expression());
+  const auto wrong = [] {
+    parse_scene(R"({"sardf": 1, "solid": {"pear": {"radius": -2}}})", "pear.json");
+  };
+  EXPECT_THROW(wrong(), SceneErrors);
+}
+
+TEST_F(MadeUpOperation, IsInTheSchemaAndTheDocument) {
+  const std::string schema = nlohmann::json::parse(scene_schema()).dump();
+  EXPECT_NE(schema.find("\"pear\""), std::string::npos);
+  EXPECT_NE(schema.find(Pear::doc), std::string::npos);
+  EXPECT_NE(schema.find("\"taper\""), std::string::npos);
+  const std::string document = operations_document();
+  EXPECT_NE(document.find("pear"), std::string::npos);
+  EXPECT_NE(document.find(Pear::doc), std::string::npos);
+  EXPECT_NE(document.find("wobble"), std::string::npos);
 }
 
 }  // namespace

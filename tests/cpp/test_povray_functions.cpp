@@ -108,6 +108,7 @@ TEST(PovrayFunctions, NameFunctionsAfterTheSceneAndAvoidReservedWords) {
   EXPECT_EQ(text.names, (std::vector<std::string>{"part3_Z_hne_rad_box", "part3_Z_hne_rad_box_2",
                                                   "part3_Z_hne_rad_t", "part3_Z_hne_rad_gr_e_1",
                                                   "part3_Z_hne_rad_7"}));
+  EXPECT_EQ(Names("bearing block, hardened around its bore").prefix(), "bearing_block");
   expect_same_values({{"union", sphere_at(1)}, {"x", X}, {"a", plus(X, Y)}, {"Z", Z}});
 }
 

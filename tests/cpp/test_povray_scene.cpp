@@ -216,11 +216,11 @@ TEST_F(PovrayRender, PovraysComplaintsAreErrors) {
   text.scene = "camera { location 0 }\n" + sound;
   EXPECT_THAT(error_of([&] { render(scene, text); }), HasSubstr("Parse Warning"));
   text.scene = sound;
-  const auto empty = [](const std::string&) { return std::string("shows nothing"); };
+  const auto empty = [](const std::string&) { return std::string("the picture is empty"); };
   std::ofstream(folder_ / "scene.pov") << text.scene;
   EXPECT_THAT(
       error_of([&] { povray::render(folder_ / "scene.pov", folder_ / "picture.exr", {}, empty); }),
-      HasSubstr("the picture that POV-Ray rendered shows nothing"));
+      HasSubstr("POV-Ray: the picture is empty"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "picture.exr"));
   EXPECT_THAT(error_of([&] { povray::render(folder_ / "none.pov", folder_ / "p.exr", {}); }),
               HasSubstr("there is no such scene"));

@@ -169,6 +169,11 @@ class Scene:
         Certified (lo, hi): outside them the solid is proven empty.
         """
     @property
+    def drawn(self) -> Field:
+        """
+        The solid with its sections cut away.
+        """
+    @property
     def materials(self) -> list[str]:
         """
         Names, in order.

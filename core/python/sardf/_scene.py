@@ -20,9 +20,7 @@ class blend:
             _core._fail(f"blend takes one keyword of {', '.join(_core._blends)}")
         name, value = next(iter(chosen.items()))
         if name not in _core._blends:
-            raise _core.Error(
-                f"there is no blend '{name}'; accepted are {', '.join(_core._blends)}"
-            )
+            _core._fail(f"there is no blend '{name}'; accepted are {', '.join(_core._blends)}")
         make = getattr(_core, _core._blends[name])
         self._blend = make() if value is True else make(value)
 
@@ -81,3 +79,6 @@ def Scene(solid, materials=None, fractions=None, **rest):
         document["fractions"] = fractions
     text = json.dumps(names.plain(document))
     return _core.Scene.from_json(text, names.fields)
+
+
+Scene.from_json = _core.Scene.from_json

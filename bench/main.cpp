@@ -1,0 +1,11 @@
+#include <benchmark/benchmark.h>
+
+#include "register.hpp"
+
+int main(int count, char** arguments) {
+  // Not before main: the operations' names are static objects.
+  sardf::bench::register_evaluation();
+  benchmark::Initialize(&count, arguments);
+  if (benchmark::ReportUnrecognizedArguments(count, arguments)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+}

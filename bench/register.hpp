@@ -1,0 +1,9 @@
+// Benchmarks that are made in loops, so that no macro registers them.
+#pragma once
+
+namespace sardf::bench {
+
+/// Of evaluation: one for each shape, number type and loop, and one for each operation.
+void register_evaluation();
+
+}  // namespace sardf::bench

@@ -131,8 +131,7 @@ ReportView compare_view(const Item& item, const Blender& blender, const Limits& 
   const Mask candidate_mask = mask_from_alpha(candidate);
   // The same as PNG, for eyes.
   write_image(item.folder / "povray_flat.png", reference, Meaning::color, Depth::byte8);
-  write_image(item.folder / (blender.label + " flat.png"), candidate, Meaning::color,
-              Depth::byte8);
+  write_image(item.folder / (blender.label + " flat.png"), candidate, Meaning::color, Depth::byte8);
   ReportView view;
   view.label = blender.label;
   view.limits = limits;

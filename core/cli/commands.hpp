@@ -1,5 +1,6 @@
-// The subcommands of `sardf`: one file each, command_*.cpp. Each adds its options to the app and runs
-// when it is chosen; it throws Error for wrong input and CLI::RuntimeError(1) for work that failed.
+// The subcommands of `sardf`: one file each, command_*.cpp. Each adds its options to the app and
+// runs when it is chosen; it throws Error for wrong input and CLI::RuntimeError(1) for work that
+// failed.
 #pragma once
 
 #include <string>

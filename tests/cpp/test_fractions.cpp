@@ -160,7 +160,7 @@ TEST(Fractions, TakeInfluencesThatDependOnTheDistance) {
   const std::vector<Record> huge{feature(x, of("a"), 1, formula("exp(60*u)", {{"u", x}})),
                                  feature(y, of("b"), 1, formula("2*exp(59*u)", {{"u", y}}))};
   const auto shares = lower(make_fractions("inverse_distance", {huge}), three, 1.0);
-  EXPECT_NEAR(at(shares, {20, 20, 0})[0], 2 * std::exp(-20), 1e-20);
+  EXPECT_NEAR(at(shares, {20, 20, 0})[0], 2 * std::exp(-20), 1e-16);
 }
 
 // The part of section 6.2 with four grooved pins on a plate.

@@ -36,10 +36,10 @@ TEST(IntervalNumber, RoundsOutwards) {
 }
 
 TEST(IntervalNumber, TenthsHoldTheRealSum) {
-  // 0.1 + 0.2 is not 0.3 in double; the interval holds the real number's neighbours.
+  // The real sum of the doubles 0.1 and 0.2 lies between the doubles 0.3 and 0.3 + 2^-54.
   const Interval sum = Interval(0.1) + Interval(0.2);
-  EXPECT_LT(sum.lo, 0.3);
-  EXPECT_GT(sum.hi, 0.3);
+  EXPECT_LE(sum.lo, 0.3);
+  EXPECT_GE(sum.hi, 0.30000000000000004);
   EXPECT_LT(sum.hi - sum.lo, 1e-15);
 }
 

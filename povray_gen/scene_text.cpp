@@ -12,7 +12,6 @@ namespace {
 constexpr double accuracy = 1e-5;
 // Half the step of our central differences: rounding and curvature both stay below 1e-9.
 constexpr double normal_step = 1e-5;
-constexpr int lipschitz_boxes = 1024;
 constexpr double gradient_margin = 1.02;
 
 // The identifiers that users meet, reserved before any field takes one.
@@ -34,8 +33,7 @@ struct Gradient {
 };
 
 Gradient gradient_of(const PovrayScene& scene) {
-  const CertifiedBound bound =
-      certified_lipschitz(Evaluator(scene.solid), scene.bounds, lipschitz_boxes);
+  const CertifiedBound bound = certified_lipschitz(Evaluator(scene.solid), scene.bounds);
   const std::optional<double>& stated = scene.stated_lipschitz;
   if (stated && !(bound.value <= *stated)) return {*stated, false};
   if (bound.value < infinity) return {bound.value, true};

@@ -11,7 +11,8 @@
 namespace sardf {
 
 /// A polygon mesh of quads, wound counter-clockwise seen from outside (where the field is
-/// negative). A triangle repeats its last index. Lengths are in scene units.
+/// negative), to be split from their first corner to their third. A triangle repeats its last
+/// index. Lengths are in scene units.
 struct Mesh {
   std::vector<Vec3> vertices;
   std::vector<std::array<uint32_t, 4>> faces;

@@ -28,18 +28,9 @@ std::array<float, N> to_float(const std::array<double, N>& from) {
   return result;
 }
 
-// How well a triangle of corners agrees with their normals: the cosine; -2 without area.
-double agreement(const Mesh& mesh, uint32_t face, const std::array<uint32_t, 3>& k) {
-  const auto& v = mesh.faces[face];
-  const Vec3 &a = mesh.vertices[v[k[0]]], &b = mesh.vertices[v[k[1]]], &c = mesh.vertices[v[k[2]]];
-  const Vec3 normal = cross(b - a, c - a);
-  if (!(norm(normal) > 0)) return -2;
-  if (mesh.corner_normals.empty()) return 0;
-  double least = 1;
-  for (const uint32_t corner : k) {
-    least = std::min(least, dot(normalized(normal), mesh.corner_normals[4 * face + corner]));
-  }
-  return least;
+bool has_area(const Mesh& mesh, const std::array<uint32_t, 4>& face, int second) {
+  const Vec3& a = mesh.vertices[face[0]];
+  return norm(cross(mesh.vertices[face[second]] - a, mesh.vertices[face[second + 1]] - a)) > 0;
 }
 
 }  // namespace
@@ -63,17 +54,11 @@ Corners unique_corners(const Mesh& mesh) {
 }
 
 std::vector<std::array<uint32_t, 3>> triangulate(const Mesh& mesh) {
-  using Triangle = std::array<uint32_t, 3>;
-  constexpr Triangle splits[2][2] = {{{0, 1, 2}, {0, 2, 3}}, {{0, 1, 3}, {1, 2, 3}}};
-  std::vector<Triangle> triangles;
+  std::vector<std::array<uint32_t, 3>> triangles;
   for (uint32_t f = 0; f < mesh.faces.size(); ++f) {
-    const auto worst = [&](const Triangle* split) {
-      return std::min(agreement(mesh, f, split[0]), agreement(mesh, f, split[1]));
-    };
-    const bool other = !is_triangle(mesh.faces[f]) && worst(splits[1]) > worst(splits[0]);
-    for (const Triangle& t : splits[other]) {
-      if (agreement(mesh, f, t) < -1.5) continue;
-      triangles.push_back({4 * f + t[0], 4 * f + t[1], 4 * f + t[2]});
+    for (const int second : {1, 2}) {
+      if (!has_area(mesh, mesh.faces[f], second)) continue;
+      triangles.push_back({4 * f, 4 * f + second, 4 * f + second + 1});
     }
   }
   return triangles;

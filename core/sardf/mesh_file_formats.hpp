@@ -24,8 +24,7 @@ Corners unique_corners(const Mesh& mesh);
 
 bool is_triangle(const std::array<uint32_t, 4>& face);
 
-/// Corner numbers (4 * face + k) of triangles. Quads are split along the diagonal whose triangles
-/// agree better with the corner normals; triangles without area are left out.
+/// Corner numbers (4 * face + k) of triangles; those without area are left out.
 std::vector<std::array<uint32_t, 3>> triangulate(const Mesh& mesh);
 
 /// The little-endian bytes of a number.

@@ -175,6 +175,7 @@ Mesh make_mesh(const Evaluator& solid, const BoundingBox& bounds, const MeshOpti
   mesh.vertices = std::move(vertices.at);
   mesh.faces = std::move(net.faces);
   fill_normals(mesh);
+  choose_diagonals(mesh);
   return mesh;
 }
 

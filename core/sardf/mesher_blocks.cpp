@@ -83,10 +83,10 @@ void check_memory(size_t nodes, int level, const Grid& grid, size_t limit) {
   const double needed = bytes_per_cell * cells;
   if (needed <= double(limit)) return;
   const auto gib = [](double bytes) { return short_number(bytes / double(1 << 30)); };
-  throw Error("a mesh with cells of " + short_number(grid.cell) + " scene units needs " +
-              (level > 0 ? "more than " : "about ") + gib(needed) + " GiB of memory, " +
-              gib(double(limit)) + " GiB are free; cells of " +
-              short_number(grid.cell * 1.1 * std::sqrt(needed / double(limit))) + " fit");
+  throw Failure("a mesh with cells of " + short_number(grid.cell) + " scene units needs " +
+                (level > 0 ? "more than " : "about ") + gib(needed) + " GiB of memory, " +
+                gib(double(limit)) + " GiB are free; cells of " +
+                short_number(grid.cell * 1.1 * std::sqrt(needed / double(limit))) + " fit");
 }
 
 }  // namespace

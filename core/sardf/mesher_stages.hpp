@@ -122,5 +122,8 @@ std::vector<Vec3> find_normals(const Field& field, const Grid& grid, const Net& 
                                Work& work);
 std::vector<std::array<uint32_t, 2>> find_creases(const Net& net, const Vertices& vertices,
                                                   const std::vector<Vec3>& corner_normals);
+/// Turns each quad so that the triangles that its first and third corner part agree better with the
+/// corner normals than those of the other diagonal.
+void choose_diagonals(Mesh& mesh);
 
 }  // namespace sardf::mesher

@@ -83,14 +83,21 @@ struct Remover {
 
 std::string find_povray() {
   const std::string path = find_program("povray", "POVRAY");
-  if (!path.empty()) return path;
-  throw Error(
-      "POV-Ray 3.7 was not found; install it (Debian: apt install povray) or set the "
-      "environment variable POVRAY to its path");
+  if (!path.empty() && ::access(path.c_str(), X_OK) == 0) return path;
+  throw Failure(
+      std::string("POV-Ray 3.7 was not found; install it (Debian: apt install povray) or ") +
+      "set the environment variable POVRAY to its path" +
+      (path.empty() ? "" : "; it is '" + path + "'"));
 }
 
 std::string complaint_in(const std::string& messages) {
-  const std::string text = joined(messages);
+  std::string text = joined(messages);
+  // A lens shift is a direction that is not perpendicular to the picture: that is meant.
+  for (const std::string meant = "Parse Warning: Camera vectors are not perpendicular.";;) {
+    const size_t at = text.find(meant);
+    if (at == std::string::npos) break;
+    text.erase(at, meant.size());
+  }
   for (const char* marker : {"Parse Error:", "Parse Warning:", "may contain holes", "Fatal error",
                              "Render failed", "Cannot open"}) {
     const size_t at = text.find(marker);
@@ -111,7 +118,7 @@ void render(const std::string& scene, const std::string& image, const RunOptions
   if (!fs::is_regular_file(scene)) throw Error("there is no such scene for POV-Ray", scene);
   const fs::path target = fs::absolute(image), source = fs::absolute(scene);
   if (!fs::is_directory(target.parent_path())) {
-    throw Error("the folder " + target.parent_path().string() + " does not exist", image);
+    throw Failure("the folder " + target.parent_path().string() + " does not exist", image);
   }
   // POV-Ray may write only below the folder that it runs in: the picture goes there first.
   std::string name(".");
@@ -124,16 +131,17 @@ void render(const std::string& scene, const std::string& image, const RunOptions
       run_process(command(source.filename().string(), name, options),
                   {source.parent_path().string(), options.timeout, options.progress});
   if (result.timed_out) {
-    throw Error("POV-Ray was stopped after " + std::to_string(int(options.timeout)) + " s", scene);
+    throw Failure("POV-Ray was stopped after " + std::to_string(int(options.timeout)) + " s",
+                  scene);
   }
   std::string complaint = complaint_in(result.errors);
   if (complaint.empty() && result.exit_code != 0) {
     complaint = "exit code " + std::to_string(result.exit_code);
   }
-  if (!complaint.empty()) throw Error("POV-Ray: " + complaint, scene);
-  if (!fs::is_regular_file(temporary.path)) throw Error("POV-Ray wrote no picture", scene);
+  if (!complaint.empty()) throw Failure("POV-Ray: " + complaint, scene);
+  if (!fs::is_regular_file(temporary.path)) throw Failure("POV-Ray wrote no picture", scene);
   if (check) complaint = check(temporary.path.string());
-  if (!complaint.empty()) throw Error("POV-Ray: " + complaint, scene);
+  if (!complaint.empty()) throw Failure("POV-Ray: " + complaint, scene);
   std::error_code error;
   fs::rename(temporary.path, target, error);
   if (error) {
@@ -141,7 +149,7 @@ void render(const std::string& scene, const std::string& image, const RunOptions
     const Remover copy{target.string() + "." + std::to_string(::getpid())};
     fs::copy_file(temporary.path, copy.path, fs::copy_options::overwrite_existing, error);
     if (!error) fs::rename(copy.path, target, error);
-    if (error) throw Error("cannot be written: " + error.message(), image);
+    if (error) throw Failure("cannot be written: " + error.message(), image);
   }
 }
 

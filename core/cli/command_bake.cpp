@@ -23,7 +23,7 @@ struct Options {
 void make_folder(const std::string& path) {
   std::error_code error;
   std::filesystem::create_directories(path, error);
-  if (error) throw Error("the folder cannot be made: " + error.message(), path);
+  if (error) throw Failure("the folder cannot be made: " + error.message(), path);
 }
 
 // Names inside the file: materials for fractions, else the image library's own (R, G, B or Y).

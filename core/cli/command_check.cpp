@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
@@ -32,36 +33,51 @@ const char* name(Exactness e) {
   return e == Exactness::exact ? "exact" : e == Exactness::bound ? "bound" : "estimate";
 }
 
-void row(const std::string& label, const std::string& value) {
-  std::printf("%-16s%s\n", label.c_str(), value.c_str());
-}
+// Rows of two columns, printed together once nothing can fail any more.
+class Table {
+ public:
+  void row(const std::string& label, const std::string& value) {
+    width_ = std::max(width_, label.size());
+    rows_.emplace_back(label, value);
+  }
+
+  void print() const {
+    for (const auto& [label, value] : rows_) {
+      std::printf("%-*s  %s\n", int(width_), label.c_str(), value.c_str());
+    }
+  }
+
+ private:
+  size_t width_ = 0;
+  std::vector<std::pair<std::string, std::string>> rows_;
+};
 
 // An infinite bound is named with the operation that makes it so.
 std::string text(const CertifiedBound& bound) {
   return std::isfinite(bound.value) ? text(bound.value) : "inf, because of " + bound.infinite_at;
 }
 
-void print_volumes(const Scene& scene, int resolution) {
+void add_volumes(Table& table, const Scene& scene, int resolution) {
   const MaterialVolumes volumes =
       measure_volumes(scene, resolution, terminal_progress("measuring"));
   const double cm = 100 * scene.metres_per_unit(), cm3 = cm * cm * cm;
-  row("volume", text(volumes.total) + " " + scene.description().units +
-                    "³ = " + text(volumes.total * cm3) + " cm³");
+  table.row("volume", text(volumes.total) + " " + scene.description().units +
+                          "³ = " + text(volumes.total * cm3) + " cm³");
   const auto& materials = scene.description().materials;
   for (size_t m = 0; m < volumes.materials.size(); ++m) {
     const double volume = volumes.materials[m] * cm3;
     std::string line = text(volume) + " cm³";
     if (materials[m].density) line += ", " + text(volume * *materials[m].density) + " g";
-    row("  " + materials[m].name, line);
+    table.row("  " + materials[m].name, line);
   }
 }
 
-void print_fields(const Scene& scene) {
-  row("fields", "distance inside, outside");
-  const auto line = [](const std::string& label, const Field& field) {
-    row("  " + label, std::string(name(field.quality().inside)) + ", " +
-                          name(field.quality().outside) + ", error bound " +
-                          text(certified_error(field.expression())));
+void add_fields(Table& table, const Scene& scene) {
+  table.row("fields", "distance inside, outside");
+  const auto line = [&table](const std::string& label, const Field& field) {
+    table.row("  " + label, std::string(name(field.quality().inside)) + ", " +
+                                name(field.quality().outside) + ", error bound " +
+                                text(certified_error(field.expression())));
   };
   for (const NamedField& named : scene.description().fields) line(named.name, named.field);
   line("(solid)", scene.description().solid);
@@ -70,19 +86,21 @@ void print_fields(const Scene& scene) {
 void check(const Options& options) {
   const Scene scene(read_scene(options.scene), terminal_progress("finding bounds"));
   const SceneDescription& d = scene.description();
-  row("title", d.title);
-  row("units", d.units);
-  row("bounds", text(scene.bounds().lo) + " to " + text(scene.bounds().hi) + ", certified");
-  print_volumes(scene, options.resolution);
+  Table table;
+  table.row("title", d.title);
+  table.row("units", d.units);
+  table.row("bounds", text(scene.bounds().lo) + " to " + text(scene.bounds().hi) + ", certified");
+  add_volumes(table, scene, options.resolution);
   const Evaluator solid(scene.solid());
   if (d.stated_lipschitz) {
-    row("Lipschitz", text(*d.stated_lipschitz) + ", stated, not proven");
+    table.row("Lipschitz", text(*d.stated_lipschitz) + ", stated, not proven");
   } else {
-    row("Lipschitz", text(certified_lipschitz(solid, scene.bounds())));
+    table.row("Lipschitz", text(certified_lipschitz(solid, scene.bounds())));
   }
-  row("error bound", text(certified_error(scene.solid())));
-  print_fields(scene);
-  if (!d.sections.empty()) row("sections", std::to_string(d.sections.size()));
+  table.row("error bound", text(certified_error(scene.solid())));
+  add_fields(table, scene);
+  if (!d.sections.empty()) table.row("sections", std::to_string(d.sections.size()));
+  table.print();
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "cli/render_povray.hpp"
 #include "cli/work_queue.hpp"
 #include "cli/write_text.hpp"
+#include "povray_gen/run.hpp"
 #include "sardf/camera_file.hpp"
 #include "sardf/error.hpp"
 #include "sardf/scene_file.hpp"
@@ -24,7 +25,7 @@ namespace fs = std::filesystem;
 
 struct Options {
   std::vector<std::string> scenes, blenders, lattices;
-  std::string output, size = "640x480", headless = "blender_addon/headless.py";
+  std::string output, size = "640x480", headless = find_headless();
   std::string reference, reference_camera;
   int resolution = 128, texture_size = 2048, samples = 32;
   bool shaded = false;
@@ -95,11 +96,11 @@ std::vector<std::function<void()>> jobs_of(const Options& options, const Size& s
         options.reference_camera.empty() ? item.camera : read_camera(options.reference_camera);
     for (const std::string look : {"flat", "normals"}) {
       jobs.push_back([&item, &reference, camera, look, size, watch, &log] {
-        PovrayJob job{item.folder / ("povray_" + look + ".pov"), look, camera, size.width,
-                      size.height};
+        povray::SceneFiles files{item.folder / ("povray_" + look + ".pov"), look, camera,
+                                 size.width, size.height};
         log.timed(item.name + ": POV-Ray, " + look, [&] {
-          write_povray(reference, job);
-          render_povray(job, item.folder / ("povray_" + look + ".exr"), watch);
+          povray::write_files(reference, files);
+          render_povray(files, item.folder / ("povray_" + look + ".exr"), watch);
         });
       });
     }
@@ -180,12 +181,19 @@ bool report(const Options& options, const std::vector<Item>& items,
 
 void compare(Options options) {
   const Size size = parse_size(options.size);
+  povray::find_povray();
   std::vector<Blender> blenders;
   for (const std::string& program : options.blenders) {
     blenders.push_back(find_blender(program, options.headless));
   }
   std::vector<Item> items;
-  for (const std::string& path : options.scenes) items.push_back(make_item(options, path, size));
+  for (const std::string& path : options.scenes) {
+    items.push_back(make_item(options, path, size));
+    for (size_t i = 0; i + 1 < items.size(); ++i) {
+      if (items[i].name != items.back().name) continue;
+      throw Error("two scenes are called " + items[i].name + ": their pictures would be one file");
+    }
+  }
   Log log;
   run_jobs(jobs_of(options, size, items, blenders, log), 2);
   if (!report(options, items, blenders)) throw CLI::RuntimeError(1);

@@ -2,6 +2,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 
@@ -40,6 +41,7 @@ bool parse_point(const std::string& line, Vec3& point) {
 std::vector<double> read_points(const std::string& path) {
   std::ifstream file;
   if (path != "-") {
+    if (std::filesystem::is_directory(path)) throw Error("is a folder", path);
     file.open(path);
     if (!file) throw Error("cannot be read: " + std::string(std::strerror(errno)), path);
   }
@@ -83,6 +85,9 @@ void append(std::string& text, double value) {
 }
 
 void evaluate(const Options& options) {
+  if (options.scene == "-" && options.points == "-") {
+    throw Error("standard input cannot be both the scene and the points");
+  }
   const Scene scene(read_scene(options.scene));
   const std::vector<double> points = read_points(options.points);
   const size_t n = points.size() / 3, materials = scene.fractions().size();

@@ -3,6 +3,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/render_povray.hpp"
+#include "povray_gen/run.hpp"
 #include "sardf/camera_file.hpp"
 #include "sardf/error.hpp"
 #include "sardf/scene_file.hpp"
@@ -13,22 +14,19 @@ namespace {
 
 struct Options {
   std::string scene, camera, image;
-  PovrayJob job;
+  povray::SceneFiles files;
 };
 
-void povray(Options& options) {
-  if (!options.job.path.ends_with(".pov")) {
-    throw Error("the output must end in .pov; the functions go into an .inc file beside it",
-                options.job.path);
-  }
+void write_and_render(Options& options) {
+  if (!options.image.empty()) povray::find_povray();
   const Scene scene(read_scene(options.scene), terminal_progress("finding bounds"));
-  options.job.camera = options.camera.empty()
-                           ? scene_camera(scene, options.job.width, options.job.height)
-                           : read_camera(options.camera);
-  write_povray(scene, options.job);
-  std::cout << options.job.path << "\n";
+  options.files.camera = options.camera.empty()
+                             ? scene_camera(scene, options.files.width, options.files.height)
+                             : read_camera(options.camera);
+  povray::write_files(scene, options.files);
+  std::cout << options.files.path << "\n";
   if (options.image.empty()) return;
-  render_povray(options.job, options.image, terminal_progress("rendering"));
+  render_povray(options.files, options.image, terminal_progress("rendering"));
   std::cout << options.image << "\n";
 }
 
@@ -39,20 +37,20 @@ void add_povray(CLI::App& app) {
       app.add_subcommand("povray", "Write the scene as POV-Ray functions; render it");
   const auto options = std::make_shared<Options>();
   command->add_option("scene", options->scene, "Scene file; - for standard input")->required();
-  command->add_option("-o,--output", options->job.path, "part.pov; part.inc is written beside it")
+  command->add_option("-o,--output", options->files.path, "part.pov; part.inc is written beside it")
       ->required();
   command->add_option("--render", options->image, "Also render to this .exr (linear) or .png");
-  command->add_option("--look", options->job.look, "shaded, flat or normals")
+  command->add_option("--look", options->files.look, "shaded, flat or normals")
       ->check(CLI::IsMember({"shaded", "flat", "normals"}))
       ->capture_default_str();
   command->add_option("--camera", options->camera, "A camera.json; else the scene is framed");
-  command->add_option("--width", options->job.width, "Pixels")
+  command->add_option("--width", options->files.width, "Pixels")
       ->check(CLI::Range(8, 16384))
       ->capture_default_str();
-  command->add_option("--height", options->job.height, "Pixels")
+  command->add_option("--height", options->files.height, "Pixels")
       ->check(CLI::Range(8, 16384))
       ->capture_default_str();
-  command->callback([options] { povray(*options); });
+  command->callback([options] { write_and_render(*options); });
 }
 
 }  // namespace sardf

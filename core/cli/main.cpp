@@ -11,14 +11,33 @@ namespace {
 
 constexpr int failed = 1, wrong_input = 2;
 
+// CLI11 only says that a command is missing when the first word is none.
+void check_command(const CLI::App& app, int count, char** arguments) {
+  const std::string word = count > 1 ? arguments[1] : "-";
+  if (word.starts_with("-")) return;
+  std::vector<std::string> accepted;
+  std::string list;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    if (command->get_name() == word) return;
+    accepted.push_back(command->get_name());
+    list += (list.empty() ? "" : ", ") + accepted.back();
+  }
+  throw sardf::Error("there is no command '" + word + "'; accepted are " + list +
+                     sardf::did_you_mean(word, accepted));
+}
+
 int run(CLI::App& app, int count, char** arguments) {
   try {
+    check_command(app, count, arguments);
     app.parse(count, arguments);
     return 0;
   } catch (const CLI::RuntimeError& ended) {
     return ended.get_exit_code();
   } catch (const CLI::ParseError& usage) {
     return app.exit(usage) == 0 ? 0 : wrong_input;
+  } catch (const sardf::Failure& failure) {
+    std::cerr << "sardf: " << failure.what() << "\n";
+    return failed;
   } catch (const sardf::Error& error) {
     std::cerr << "sardf: " << error.what() << "\n";
     return wrong_input;

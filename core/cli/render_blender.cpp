@@ -34,6 +34,18 @@ std::string last_lines(const std::string& text, size_t most) {
 
 }  // namespace
 
+std::string find_headless() {
+  namespace fs = std::filesystem;
+  const fs::path name = "blender_addon/headless.py";
+  if (fs::exists(name)) return name;
+  std::error_code unknown;
+  const fs::path program = fs::read_symlink("/proc/self/exe", unknown);
+  for (fs::path at = program.parent_path(); at.has_relative_path(); at = at.parent_path()) {
+    if (fs::exists(at / name)) return at / name;
+  }
+  return name;
+}
+
 Blender find_blender(const std::string& program, const std::string& headless) {
   if (!std::filesystem::exists(headless)) {
     throw Error("there is no " + headless + "; --headless names the add-on's headless.py");
@@ -47,8 +59,8 @@ Blender find_blender(const std::string& program, const std::string& headless) {
   const ProcessResult answer = run_process(question, {.timeout = start_timeout});
   const std::string version = word_after(answer.output, marker);
   if (version.empty()) {
-    throw Error(program + " is no Blender" + (python ? " (it has no bpy module)" : "") + ": " +
-                last_lines(answer.errors + answer.output, 3));
+    throw Failure(program + " is no Blender" + (python ? " (it has no bpy module)" : "") + ": " +
+                  last_lines(answer.errors + answer.output, 3));
   }
   Blender blender;
   blender.label = (python ? "bpy " : "Blender ") + version;

@@ -22,6 +22,9 @@ struct BlenderJob {
   int width = 640, height = 480, resolution = 128, texture_size = 2048, samples = 64;
 };
 
+/// The add-on's headless.py: below the working folder, or beside a folder that holds this program.
+std::string find_headless();
+
 /// The Blender that `program` is: its version is asked. Throws Error when it cannot be run or
 /// has no bpy, or when `headless` (the add-on's headless.py) is missing.
 Blender find_blender(const std::string& program, const std::string& headless);

@@ -1,12 +1,12 @@
-// Text files that are either whole or not there.
+// Text to a file or to the standard output.
 #pragma once
 
 #include <string>
 
 namespace sardf {
 
-/// Writes `text` to a temporary name in the path's folder and renames it; "-" is the standard
-/// output. Throws Error naming the file with the system's reason; then nothing is left of it.
+/// write_file, or the standard output where the path is "-". Throws Failure with the system's
+/// reason.
 void write_text(const std::string& path, const std::string& text);
 
 }  // namespace sardf

@@ -1,6 +1,8 @@
 #include "sardf/scene.hpp"
 
 #include "convert.hpp"
+#include "povray_gen/run.hpp"
+#include "povray_gen/scene_files.hpp"
 #include "sardf/bake_channels.hpp"
 #include "sardf/camera_file.hpp"
 #include "sardf/error.hpp"
@@ -98,6 +100,22 @@ py::dict bake_maps(const Scene& scene, const Mesh& surface, int size,
   return out;
 }
 
+void write_povray(const Scene& scene, const std::string& path, const std::string& render,
+                  const py::object& camera, const std::string& look, int width, int height,
+                  py::object callable) {
+  povray::SceneFiles files{path, look, {}, width, height};
+  files.camera = camera.is_none()
+                     ? scene_camera(scene, width, height)
+                     : camera_from_text(py::str(py::module_::import("json").attr("dumps")(camera)));
+  if (!render.empty()) povray::find_povray();
+  PythonProgress progress(std::move(callable));
+  progress.run([&](const Progress& report) {
+    povray::write_files(scene, files);
+    if (!render.empty()) povray::render_files(files, render, report);
+    return true;
+  });
+}
+
 ScenePointer with_section(const Scene& scene, const Field& remove, std::vector<Field> keep) {
   SceneDescription description = scene.description();
   description.sections.push_back({remove, std::move(keep)});
@@ -153,6 +171,12 @@ void bind_scenes(py::module_& m) {
            "materials each), field, and attributes by name.")
       .def("camera", &camera, py::arg("width") = 640, py::arg("height") = 480,
            "A camera that frames the object: matrix_world, lens (mm), sensor_width, ...")
+      .def("povray", &write_povray, py::arg("path"), py::arg("render") = "",
+           py::arg("camera") = py::none(), py::arg("look") = "shaded", py::arg("width") = 640,
+           py::arg("height") = 480, py::arg("progress") = py::none(),
+           "Writes path (.pov) and the .inc beside it, for POV-Ray 3.7; renders them to `render` "
+           "(.exr or .png) unless it is empty. camera: as camera() gives it; look: shaded, flat "
+           "(the colours alone) or normals.")
       .def("section", &with_section, py::arg("remove"), py::arg("keep") = std::vector<Field>{},
            "The scene with one more cut: `remove` is taken away, the `keep` solids stay whole.");
   m.def(

@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "sardf/error.hpp"
@@ -64,13 +65,20 @@ std::string camera_text(const Camera& camera) {
   return json.dump(1) + "\n";
 }
 
+Camera camera_from_text(const std::string& text) {
+  try {
+    return parse_camera(Json::parse(text));
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(error.what());
+  }
+}
+
 Camera read_camera(const std::string& path) {
   std::ifstream file(path);
   if (!file) throw Error("cannot be read: " + std::string(std::strerror(errno)), path);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
   try {
-    return parse_camera(Json::parse(file));
-  } catch (const nlohmann::json::exception& error) {
-    throw Error(error.what(), path);
+    return camera_from_text(text);
   } catch (const Error& error) {
     throw Error(error.message, path);
   }

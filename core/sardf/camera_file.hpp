@@ -16,8 +16,10 @@ Camera scene_camera(const Scene& scene, int width, int height);
 /// "shift_y", "clip_start", "clip_end"}.
 std::string camera_text(const Camera& camera);
 
-/// Reads what camera_text writes; fields left out keep their defaults, others are ignored. Throws
-/// Error naming the file and what is wrong.
+/// What camera_text made; fields left out keep their defaults, others are ignored. Throws Error.
+Camera camera_from_text(const std::string& text);
+
+/// The same from a file; errors name it.
 Camera read_camera(const std::string& path);
 
 }  // namespace sardf

@@ -17,6 +17,12 @@ struct Error : std::runtime_error {
   std::string pointer;
 };
 
+/// What went wrong although the input was right: an output that cannot be written, a program that
+/// is missing, too little memory.
+struct Failure : Error {
+  using Error::Error;
+};
+
 /// "; did you mean 'x'?" for the accepted name nearest to `found`, or "" when none is near.
 std::string did_you_mean(const std::string& found, const std::vector<std::string>& accepted);
 

@@ -243,7 +243,7 @@ struct ImageWriter::State {
   int tiles_down() const { return (layout.height + layout.tile - 1) / layout.tile; }
 
   [[noreturn]] void fail(const std::string& doing, const std::string& reason) const {
-    throw Error(doing + ": " + without(reason, temporary, path), path);
+    throw Failure(doing + ": " + without(reason, temporary, path), path);
   }
 
   void open() {
@@ -272,8 +272,8 @@ ImageWriter::ImageWriter(const std::string& path, const ImageLayout& layout)
   state.temporary = temporary_name(path);
   const fs::path folder = fs::absolute(fs::path(path)).parent_path();
   if (!fs::is_directory(folder))
-    throw Error("cannot be written: there is no folder '" + folder.string() + "'", path);
-  if (fs::is_directory(path)) throw Error("cannot be written: it is a folder", path);
+    throw Failure("cannot be written: there is no folder '" + folder.string() + "'", path);
+  if (fs::is_directory(path)) throw Failure("cannot be written: it is a folder", path);
   state.open();
   if (layout.tile > 0)
     state.tiles_written.resize(size_t(state.tiles_across()) * state.tiles_down());
@@ -358,11 +358,11 @@ std::string encode_png(const Image& image, Meaning meaning) {
   OIIO::Filesystem::IOVecOutput memory(bytes);
   const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("png");
   if (!output || !output->set_ioproxy(&memory) || !output->open("memory.png", file_spec(layout)))
-    throw Error("a PNG cannot be made: " + (output ? output->geterror() : OIIO::geterror()));
+    throw Failure("a PNG cannot be made: " + (output ? output->geterror() : OIIO::geterror()));
   Image encoded = image;
   if (meaning == Meaning::color) encode_pixels(encoded.samples, size_t(image.channels));
   if (!output->write_image(TypeDesc::FLOAT, encoded.samples.data()) || !output->close())
-    throw Error("a PNG cannot be made: " + output->geterror());
+    throw Failure("a PNG cannot be made: " + output->geterror());
   return std::string(bytes.begin(), bytes.end());
 }
 

@@ -1,18 +1,22 @@
 // Everything about an operation, derived from one struct.
 //
 // The struct has:
-//   static constexpr const char* name, *doc;  static constexpr Kind kind;  static constexpr int
-//   arity; template <class T> T eval(T, ...) const;      the formula, in `arity` arguments template
-//   <class V> static void parameters(V& v);   v(Parameter{...}, &Op::member), each member
+//   static constexpr const char* name, *doc;
+//   static constexpr Kind kind;
+//   static constexpr int arity;
+//   template <class T> T eval(T, ...) const;       the formula, in `arity` arguments
+//   template <class V> static void parameters(V& v);
+//                                      v(Parameter{...}, &Op::member) for each member
 // and may have:
-//   void prepare();              derived members, after the parameters are set; throws Error
+//   void prepare();                    derived members, after the parameters are set; throws Error
 //   static constexpr bool distance = true;         exact Euclidean distance in its inputs
-//   static constexpr std::array<int, arity> monotone;   sign of each partial derivative everywhere
-//   double gain(Interval, ...) const;              bound of the sum of |partials|
-//   double blend_error() const;                    bound of |this - its min/max counterpart|
-//   static constexpr double rounding = 16;         rounding error, in ulps of the largest
-//   magnitude:
-//     of parameters and result and, for a distance, of arguments
+//   static constexpr std::array<int, arity> monotone;
+//                                      sign of each partial derivative everywhere
+//   double gain(Interval, ...) const;  bound of the sum of |partials|
+//   double blend_error() const;        bound of |this - its min/max counterpart|
+//   static constexpr double rounding = 16;
+//                                      rounding error, in ulps of the largest magnitude of
+//                                      parameters and result and, for a distance, of arguments
 //   static constexpr bool cancels = true;          for a monotone one: of arguments, too
 #pragma once
 

@@ -28,7 +28,7 @@ std::string temporary_name(const std::string& path) {
 
 OutputFile::OutputFile(std::string path)
     : path_(std::move(path)), temporary_(temporary_name(path_)) {
-  if (fs::is_directory(path_)) throw Error("cannot be written: it is a folder", path_);
+  if (fs::is_directory(path_)) throw Failure("cannot be written: it is a folder", path_);
   errno = 0;
   stream_.open(temporary_, std::ios::binary);
   if (!stream_) fail(errno);
@@ -58,9 +58,15 @@ void OutputFile::commit() {
 }
 
 void OutputFile::fail(int reason) {
-  throw Error("cannot be written: " +
-                  (reason ? std::generic_category().message(reason) : "the disk may be full"),
-              path_);
+  throw Failure("cannot be written: " +
+                    (reason ? std::generic_category().message(reason) : "the disk may be full"),
+                path_);
+}
+
+void write_file(const std::string& path, const std::string& bytes) {
+  OutputFile file(path);
+  file.write(bytes);
+  file.commit();
 }
 
 }  // namespace sardf

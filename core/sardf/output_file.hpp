@@ -26,4 +26,7 @@ class OutputFile {
   bool committed_ = false;
 };
 
+/// The whole file at once.
+void write_file(const std::string& path, const std::string& bytes);
+
 }  // namespace sardf

@@ -48,7 +48,7 @@ class Descriptor {
 struct Pipe {
   Pipe() {
     int ends[2];
-    if (::pipe(ends) != 0) throw Error(std::string("no pipe: ") + std::strerror(errno));
+    if (::pipe(ends) != 0) throw Failure(std::string("no pipe: ") + std::strerror(errno));
     for (int end : ends) ::fcntl(end, F_SETFD, FD_CLOEXEC);
     read.set(ends[0]);
     write.set(ends[1]);
@@ -107,9 +107,9 @@ class Child {
       wait(0);
     }
     if (reason != 0) {
-      throw Error(arguments[0] + " cannot be started" +
-                  (options.folder.empty() ? "" : " in " + options.folder) + ": " +
-                  std::strerror(reason));
+      throw Failure(arguments[0] + " cannot be started" +
+                    (options.folder.empty() ? "" : " in " + options.folder) + ": " +
+                    std::strerror(reason));
     }
   }
   Child(const Child&) = delete;

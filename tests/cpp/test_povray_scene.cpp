@@ -228,6 +228,15 @@ TEST_F(PovrayRender, PovraysComplaintsAreErrors) {
               HasSubstr("does not exist"));
 }
 
+TEST(ComplaintIn, ShiftedLensesAreMeantAndHideNoOtherWarning) {
+  const std::string shifted =
+      "File './a.pov' line 11: Parse Warning: Camera vectors are not perpendicular. \n"
+      "Making look_at the last statement may help.\n";
+  EXPECT_EQ(povray::complaint_in(shifted), "");
+  EXPECT_THAT(povray::complaint_in(shifted + "File './a.pov' line 12: Parse Warning: Other.\n"),
+              HasSubstr("Other."));
+}
+
 TEST_F(PovrayRender, StopsAtOnceWhenCancelledOrTimedOut) {
   PovrayScene scene = plate_scene();
   scene.width = 3000;
@@ -256,7 +265,8 @@ TEST_F(PovrayRender, AMissingPovrayIsSaidPlainly) {
   EXPECT_THAT(error_of([&] { render(scene); }), HasSubstr("apt install povray"));
   setenv("PATH", path.c_str(), 1);
   setenv("POVRAY", "/nowhere/povray", 1);
-  EXPECT_THAT(error_of([&] { render(scene); }), HasSubstr("/nowhere/povray cannot be started"));
+  EXPECT_THAT(error_of([&] { render(scene); }),
+              HasSubstr("POVRAY to its path; it is '/nowhere/povray'"));
   unsetenv("POVRAY");
 }
 

@@ -146,6 +146,10 @@ class Scene:
         """
         The surface with texture coordinates for a texture of `size`². resolution: cells along the longest side; cell_size (scene units) instead when > 0. progress(share) may return False to cancel, which raises Cancelled.
         """
+    def povray(self, path: str, render: str = '', camera: typing.Any = None, look: str = 'shaded', width: typing.SupportsInt | typing.SupportsIndex = 640, height: typing.SupportsInt | typing.SupportsIndex = 480, progress: typing.Any = None) -> None:
+        """
+        Writes path (.pov) and the .inc beside it, for POV-Ray 3.7; renders them to `render` (.exr or .png) unless it is empty. camera: as camera() gives it; look: shaded, flat (the colours alone) or normals.
+        """
     def save(self, path: str) -> None:
         """
         Writes a scene file.

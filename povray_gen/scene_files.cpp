@@ -1,0 +1,70 @@
+#include "povray_gen/scene_files.hpp"
+
+#include <filesystem>
+
+#include "povray_gen/run.hpp"
+#include "povray_gen/scene_text.hpp"
+#include "sardf/error.hpp"
+#include "sardf/output_file.hpp"
+
+namespace sardf::povray {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+Look look_of(const std::string& name) {
+  if (name == "shaded") return Look::shaded;
+  if (name == "flat") return Look::flat;
+  if (name == "normals") return Look::normals;
+  throw Error("there is no look '" + name + "'; accepted are shaded, flat, normals" +
+              did_you_mean(name, {"shaded", "flat", "normals"}));
+}
+
+}  // namespace
+
+void write_files(const Scene& scene, const SceneFiles& files) {
+  if (!files.path.ends_with(".pov")) {
+    throw Error("the output must end in .pov; the functions go into an .inc file beside it",
+                files.path);
+  }
+  const SceneDescription& d = scene.description();
+  PovrayScene text;
+  const std::string stem = fs::path(files.path).stem();
+  text.title = d.title.empty() ? stem : d.title;
+  text.solid = scene.drawn();
+  text.bounds = scene.bounds();
+  for (const NamedField& named : d.fields) {
+    text.fields.push_back({named.name, named.field.expression()});
+  }
+  text.color = scene.base_color();
+  text.camera = files.camera;
+  text.width = files.width;
+  text.height = files.height;
+  text.look = look_of(files.look);
+  text.stated_lipschitz = d.stated_lipschitz;
+  const fs::path include = fs::path(files.path).replace_extension(".inc");
+  const SceneText made = scene_text(text, include.filename());
+  write_file(include, made.include);
+  write_file(files.path, made.scene);
+}
+
+void render_files(const SceneFiles& files, const std::string& image, const Progress& progress,
+                  const std::function<std::string(const std::string&)>& check) {
+  const std::string ending = fs::path(image).extension();
+  if (ending != ".exr" && ending != ".png") {
+    throw Error("the picture ends in '" + ending + "'; .exr and .png are accepted", image);
+  }
+  RunOptions options;
+  options.width = files.width;
+  options.height = files.height;
+  options.format = ending == ".exr" ? Format::exr : Format::png8;
+  // A lit picture has a background; the others are cut out by their alpha.
+  const bool shaded = look_of(files.look) == Look::shaded;
+  options.alpha = !shaded;
+  options.antialias = shaded;
+  options.progress = progress;
+  render(files.path, image, options, check);
+}
+
+}  // namespace sardf::povray

@@ -1,0 +1,30 @@
+// A whole scene as POV-Ray files, and rendered from them. What the command line and Python call.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "sardf/camera.hpp"
+#include "sardf/progress.hpp"
+#include "sardf/scene.hpp"
+
+namespace sardf::povray {
+
+struct SceneFiles {
+  std::string path;             // of the .pov file; the .inc lies beside it
+  std::string look = "shaded";  // shaded, flat, normals
+  Camera camera;
+  int width = 640, height = 480;
+};
+
+/// Writes path and the .inc beside it. Throws Error for a path that does not end in .pov, an
+/// unknown look, or a bound that is not finite; Failure when a file cannot be written.
+void write_files(const Scene& scene, const SceneFiles& files);
+
+/// Renders written files to `image`, .exr (linear) or .png. `check` receives the path of the
+/// picture before it is renamed and returns a complaint or "". Throws Error for another ending,
+/// Failure when POV-Ray is missing or complains; Cancelled.
+void render_files(const SceneFiles& files, const std::string& image, const Progress& progress,
+                  const std::function<std::string(const std::string&)>& check = {});
+
+}  // namespace sardf::povray

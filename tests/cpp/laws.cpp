@@ -1,10 +1,56 @@
+#include "laws.hpp"
+
 #include <gtest/gtest.h>
 
-#include "laws.hpp"
+#include "sardf/operation_of.hpp"
+#include "sardf/ops.hpp"
 
 namespace sardf::laws {
 
 namespace {
+
+// One overload for each type of a parameter.
+inline void randomize(Random& r, const Parameter& p, double& to) { to = r.number(p); }
+inline void randomize(Random& r, const Parameter&, bool& to) { to = r.chance(0.5); }
+inline void randomize(Random& r, const Parameter&, int& to) { to = r.below(9); }
+inline void randomize(Random& r, const Parameter&, Axis& to) { to.direction = r.direction(); }
+template <size_t N>
+void randomize(Random& r, const Parameter& p, std::array<double, N>& to) {
+  for (double& a : to) a = r.number(p);
+}
+template <class T>
+void randomize(Random& r, const Parameter& p, std::optional<T>& to) {
+  if (r.chance(0.5)) randomize(r, p, to.emplace());
+}
+inline void randomize(Random& r, const Parameter& p, std::vector<Vec2>& to) {
+  to = r.contour(p.at_least + r.below(5));
+}
+inline void randomize(Random& r, const Parameter& p, std::vector<Vec3>& to) {
+  to.resize(size_t(p.at_least + r.below(5)));
+  for (Vec3& at : to) randomize(r, p, at);
+}
+
+template <class Op>
+OperationPointer random_operation(Random& r) {
+  return retried([&] {
+    Op op{};
+    auto visit = [&](const Parameter& p, auto member) { randomize(r, p, op.*member); };
+    if constexpr (requires { Op::parameters(visit); }) Op::parameters(visit);
+    return make_operation(op);
+  });
+}
+
+std::vector<ListedOperation> list_operations() {
+  std::vector<ListedOperation> all;
+  Ops::for_each([&]<class Op>(std::type_identity<Op>) {
+    ListedOperation listed{Op::name, &random_operation<Op>, {}};
+    if constexpr (is_monotone<Op>) {
+      listed.monotone.assign(std::begin(Op::monotone), std::end(Op::monotone));
+    }
+    all.push_back(listed);
+  });
+  return all;
+}
 
 bool takes_fields(const Constructor& constructor) {
   for (const ParameterInfo& p : constructor.parameters) {
@@ -66,6 +112,11 @@ Value random_value(Random& r, const ParameterInfo& info, int depth) {
 }
 
 }  // namespace
+
+const std::vector<ListedOperation>& listed_operations() {
+  static const std::vector<ListedOperation> all = list_operations();
+  return all;
+}
 
 bool can_be_random(const Constructor& constructor) {
   for (const ParameterInfo& p : constructor.parameters) {

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "laws.hpp"
+#include "sardf/kernels.hpp"
 
 namespace sardf {
 namespace {

@@ -33,12 +33,11 @@ Difference difference(F f, std::vector<double> at, size_t k, double scale) {
 }
 
 TEST(GradientLaws, PartialsEqualDifferences) {
-  laws::for_operations(1, [](auto type, const Operation&, Random& r) {
-    using Op = typename decltype(type)::type;
+  laws::for_operations(1, [](const laws::ListedOperation& listed, const Operation&, Random& r) {
     size_t compared = 0, tried = 0;
     OperationPointer op;
     for (int i = 0; i < laws::effort(1000); ++i) {
-      if (i % 20 == 0) op = laws::random_operation<Op>(r);
+      if (i % 20 == 0) op = listed.random(r);
       const std::vector<double> at = r.values(op->info().arity, 0);
       std::array<const double*, max_arity> in{};
       std::array<double*, max_arity> to{};

@@ -250,15 +250,16 @@ TEST(TraceNumber, SharesEqualTerms) {
 }
 
 TEST(TraceNumber, OperandsComeBeforeTheirUsers) {
-  Ops::for_each([]<class Op>(std::type_identity<Op>) {
+  for (const laws::ListedOperation& listed : laws::listed_operations()) {
     Random r(61);
-    Trace trace(Op::arity);
-    laws::random_operation<Op>(r)->record(trace);
-    ASSERT_GE(trace.result, 0) << Op::name;
+    const OperationPointer op = listed.random(r);
+    Trace trace(op->info().arity);
+    op->record(trace);
+    ASSERT_GE(trace.result, 0) << listed.name;
     for (size_t i = 0; i < trace.steps().size(); ++i) {
-      for (int operand : trace.steps()[i].operands) EXPECT_LT(operand, int(i)) << Op::name;
+      for (int operand : trace.steps()[i].operands) EXPECT_LT(operand, int(i)) << listed.name;
     }
-  });
+  }
 }
 
 }  // namespace

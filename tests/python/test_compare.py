@@ -43,36 +43,43 @@ def test_pictures_agree(numbers, scene, blender):
     assert verdict["passes"], missed
 
 
-# A block cut by a ball, coloured by the distance that the blend gives on the cut: R shows.
-SHOWING_R = """{"sardf": 1, "title": "showing R", "parameters": {"R": 1.5}, "fields": {
+# A block cut open, coloured by its distances to a ball and its middle, or by the field of the block
+# without the ball, whose level lines have the radius R.
+BLOCK = """{"sardf": 1, "title": "block", "parameters": {"R": 1}, "fields": {
   "block": {"box": {"size": [8, 6, 4]}}, "ball": {"sphere": {"radius": 2.5}},
   "part": {"difference": {"of": ["block", "ball"], "blend": {"sardf": "=R"}}}},
   "solid": "block",
   "materials": {"red": {"color": "#d03020"}, "blue": {"color": "#2040c0"}},
-  "fractions": {"inverse_distance": {"features": [
-    {"at": {"boundary": {"solid": "part"}}, "material": "red", "exponent": 2},
-    {"at": {"point": {"at": [0, 0, 0]}}, "material": "blue", "exponent": 2}]}},
+  "fractions": FRACTIONS,
   "sections": [{"remove": {"half_space": {"normal": [0, -1, 0]}}}]}
 """
+WEIGHTED = """{"inverse_distance": {"features": [
+    {"at": {"boundary": {"solid": "ball"}}, "material": "red", "exponent": 2},
+    {"at": {"point": {"at": [0, 0, 0]}}, "material": "blue", "exponent": 2}]}}"""
+ROUNDED = """{"ramp": {"field": "part", "stops": [
+    {"at": 0, "material": "red"}, {"at": 1, "material": "blue"}]}}"""
 
 
 @pytest.mark.parametrize(
-    ("old", "new"),
+    ("fractions", "old", "new"),
     [
-        ('"R": 1.5', '"R": 1'),
-        ('"blue", "exponent": 2', '"blue", "exponent": 1.5'),
-        ("#d03020", "#d03828"),
+        (ROUNDED, '"R": 1', '"R": 0.4'),
+        (WEIGHTED, '"blue", "exponent": 2', '"blue", "exponent": 1.5'),
+        (WEIGHTED, "#d03020", "#d03828"),
     ],
     ids=["R", "exponent", "color"],
 )
-def test_a_changed_scene_is_noticed(tmp_path, old, new):
-    assert old in SHOWING_R
-    scene, changed = tmp_path / "scene.json", tmp_path / "changed.json"
-    scene.write_text(SHOWING_R)
-    changed.write_text(SHOWING_R.replace(old, new))
-    options = ("--reference", changed, "--texture", "1024")
-    done, _ = compare(tmp_path / "out", [scene], *options, blenders=["blender"])
-    assert done.returncode == 1, done.stdout
+def test_a_changed_scene_is_noticed(tmp_path, fractions, old, new):
+    text = BLOCK.replace("FRACTIONS", fractions)
+    assert old in text
+    scene, same, changed = (tmp_path / f"{name}.json" for name in ("scene", "same", "changed"))
+    scene.write_text(text)
+    same.write_text(text)
+    changed.write_text(text.replace(old, new))
+    for reference, code in ((same, 0), (changed, 1)):
+        options = ("--reference", reference, "--texture", "1024")
+        done, _ = compare(tmp_path / "out", [scene], *options, blenders=["blender"])
+        assert done.returncode == code, done.stdout + done.stderr
     assert "asked for" in done.stderr
 
 

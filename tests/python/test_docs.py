@@ -61,6 +61,15 @@ def test_python_snippets_run(snippet, workplace):
     assert not re.search(r"^\s*(pass|\.\.\.)$", snippet, re.MULTILINE)
 
 
+@pytest.mark.parametrize("example", sorted((ROOT / "examples").glob("*.py")), ids=name_of)
+def test_examples_run(example, workplace):
+    before = set(workplace.iterdir())
+    run([sys.executable, "-W", "error", str(example)], workplace)
+    written = set(workplace.iterdir()) - before
+    assert written
+    assert all(path.stat().st_size > 0 for path in written)
+
+
 @pytest.mark.parametrize("block", blocks("bash", "console", "sh"))
 def test_commands_run(block, workplace):
     """Runs sardf and python; of the rest it checks that what is named exists."""

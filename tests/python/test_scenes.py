@@ -7,6 +7,8 @@ import manifold3d
 import numpy as np
 import pytest
 import sardf
+import scipy.sparse
+import scipy.spatial
 import trimesh
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -40,11 +42,6 @@ def triangles(mesh):
 def cell_of(scene):
     low, high = np.array(scene.bounds[0]), np.array(scene.bounds[1])
     return (high - low).max() / RESOLUTION
-
-
-def drawn(scene, points):
-    """The drawn solid at points: the solid, cut by the file's sections when it has any."""
-    return scene.drawn(points)
 
 
 def test_solid_is_empty_outside_its_bounds(scene):
@@ -107,6 +104,49 @@ def test_vertices_lie_on_the_surface(scene, surface):
     assert distance.max() <= 0.005 * cell_of(loaded)
 
 
+def box_edges(low, high):
+    """Points along the twelve edges of a box."""
+    low, high, share = np.array(low), np.array(high), np.linspace(0, 1, 400)[:, None]
+    corners = [np.where([i & 1, i & 2, i & 4], high, low) for i in range(8)]
+    pairs = [(i, i | bit) for i in range(8) for bit in (1, 2, 4) if not i & bit]
+    return np.concatenate([corners[i] + share * (corners[j] - corners[i]) for i, j in pairs])
+
+
+def rim(center, axis, radius):
+    """Points along a circle around the y or the z axis."""
+    angle = np.linspace(0, 2 * np.pi, 2000)
+    a, b = radius * np.cos(angle), radius * np.sin(angle)
+    ring = [a, 0 * a, b] if axis == "y" else [a, b, 0 * a]
+    return np.array(center) + np.transpose(ring)
+
+
+# Edges of the solids as their scene files describe them.
+EDGES = {
+    "cad_pins": box_edges((-5, -5, -3), (5, 5, 3)),
+    "lined_bore": np.concatenate(
+        [rim((0, y, 28), "y", 11) for y in (-17, 17)]
+        + [rim((x, 0, z), "z", 3.5) for x in (-32, 32) for z in (0, 12)]
+    ),
+}
+
+
+@pytest.mark.parametrize("name", EDGES)
+def test_edges_are_sharp_and_in_their_place(name):
+    loaded = sardf.load(str(ROOT / "scenes" / f"{name}.json"))
+    surface = loaded.mesh(resolution=RESOLUTION, size=0)
+    true, cell = EDGES[name], cell_of(loaded)
+    sharp = surface.vertices[np.unique(surface.creases)]
+    distance, _ = scipy.spatial.cKDTree(true).query(sharp)
+    on_edge = distance < 0.5 * cell
+    spacing = np.linalg.norm(np.diff(true[:400], axis=0), axis=1).max()
+    assert on_edge.sum() > 0.5 * len(true) * spacing / cell
+    # The nearest point of the samples is up to half a spacing off along the edge.
+    along = np.sqrt(np.maximum(distance[on_edge] ** 2 - (spacing / 2) ** 2, 0))
+    assert along.max() <= 0.02 * cell
+    # And no part of an edge is missing: a vertex stands on it at least every second cell.
+    assert scipy.spatial.cKDTree(sharp).query(true)[0].max() <= 2 * cell
+
+
 def test_volume_agrees_with_the_field(scene, surface):
     """The mesh's volume against counting random points: an estimate that shares no code."""
     _, loaded = scene
@@ -131,6 +171,18 @@ def test_atlas(scene, surface):
         assert signed.min() > -1e-9
         area += signed.sum()
     assert area >= 0.55
+    assert chart_count(surface) <= 60
+
+
+def chart_count(surface):
+    """Charts: faces joined wherever they share an edge with the same texture coordinates."""
+    keys = np.concatenate([surface.faces.reshape(-1, 1), surface.uv.round(7)], axis=1)
+    _, corner = np.unique(keys, axis=0, return_inverse=True)
+    corner = corner.reshape(-1, 4)
+    start, end = corner.ravel(), np.roll(corner, -1, axis=1).ravel()
+    size = corner.max() + 1
+    graph = scipy.sparse.coo_matrix((np.ones(len(start)), (start, end)), (size, size))
+    return scipy.sparse.csgraph.connected_components(graph, directed=False)[0]
 
 
 def bilinear(image, uv):

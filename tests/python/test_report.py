@@ -92,7 +92,7 @@ def test_wrong_input_is_told_apart_from_disagreement(tmp_path: Path) -> None:
     assert result.returncode == 2
     assert "missing.exr: there is no such file" in result.stderr
     result = compare(picture, picture, "-o", tmp_path / "no" / "report.html")
-    assert result.returncode == 2
+    assert result.returncode == 1
     assert "report.html: cannot be written" in result.stderr
     assert compare(picture).returncode == 2
     assert [path.name for path in tmp_path.iterdir()] == ["a.png"]

@@ -10,6 +10,7 @@ import sardf
 import scipy.sparse
 import scipy.spatial
 import trimesh
+from sardf import _image
 
 ROOT = Path(__file__).resolve().parents[2]
 SCENES = sorted((ROOT / "scenes").glob("*.json"))
@@ -251,3 +252,42 @@ def test_round_trip(scene):
     np.testing.assert_array_equal(again.solid(points), loaded.solid(points))
     np.testing.assert_array_equal(again.fractions(points), loaded.fractions(points))
     assert json.loads(again.to_json()) == json.loads(loaded.to_json())
+
+
+def test_povray_files_of_a_scene(tmp_path):
+    loaded = sardf.load(str(ROOT / "scenes" / "two_ellipsoids.json"))
+    path, picture = tmp_path / "part.pov", tmp_path / "part.png"
+    camera = loaded.camera(width=80, height=60)
+    loaded.povray(str(path), render=str(picture), camera=camera, look="flat", width=80, height=60)
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["part.inc", "part.png", "part.pov"]
+    assert '#include "part.inc"' in path.read_text()
+    image = _image.read(str(picture))
+    assert image.shape == (60, 80, 4)
+    assert 0.1 < (image[:, :, 3] > 0.5).mean() < 0.9
+    with pytest.raises(sardf.Error, match="did you mean 'flat'"):
+        loaded.povray(str(path), look="flatt")
+    with pytest.raises(sardf.Error, match=r"\.pov"):
+        loaded.povray(str(tmp_path / "part.txt"))
+
+
+def test_a_section_is_one_more_cut():
+    loaded = sardf.load(str(ROOT / "scenes" / "lined_bore.json"))
+    half = sardf.half_space(point=(0, 0, 0), normal=(1, 0, 0))
+    cut = loaded.section(remove=half)
+    assert (cut.section_count, loaded.section_count) == (1, 0)
+    points = np.random.default_rng(10).uniform(*np.array(loaded.bounds), (2000, 3))
+    points = points[np.abs(points[:, 0]) > 1e-6]
+    inside = (loaded.solid(points) >= 0) & (points[:, 0] < 0)
+    np.testing.assert_array_equal(cut.drawn(points) >= 0, inside)
+    np.testing.assert_array_equal(cut.solid(points), loaded.solid(points))
+    np.testing.assert_array_equal(cut.fractions(points), loaded.fractions(points))
+
+
+def test_progress_rises_and_cancels():
+    loaded = sardf.load(str(ROOT / "scenes" / "two_ellipsoids.json"))
+    shares = []
+    loaded.mesh(resolution=48, size=0, progress=shares.append)
+    assert shares == sorted(shares)
+    assert shares[-1] == 1
+    with pytest.raises(sardf.Cancelled):
+        loaded.mesh(resolution=64, progress=lambda share: share < 0.3)

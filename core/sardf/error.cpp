@@ -30,6 +30,10 @@ size_t edit_distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
+size_t common(const std::string& a, const std::string& b) {
+  return size_t(std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first - a.begin());
+}
+
 }  // namespace
 
 Error::Error(std::string text, std::string where, int at_line, std::string at)
@@ -44,7 +48,10 @@ std::string did_you_mean(const std::string& found, const std::vector<std::string
   size_t least = std::max<size_t>(found.size() / 2, 2) + 1;
   for (const std::string& name : accepted) {
     const size_t distance = edit_distance(found, name);
-    if (distance < least) {
+    // Of equally near names the one that begins alike.
+    const bool alike =
+        nearest && distance == least && common(found, name) > common(found, *nearest);
+    if (distance < least || alike) {
       least = distance;
       nearest = &name;
     }

@@ -42,7 +42,7 @@ class Parser {
     }
     if (operand_expected_) fail(tokens_[next_], expected(tokens_[next_]));
     reduce(0);
-    if (!pending_.empty()) fail(pending_.back().token, "this '(' is never closed");
+    if (!pending_.empty()) fail(pending_.back().token, unclosed(pending_.back()));
     return values_.back();
   }
 
@@ -60,6 +60,11 @@ class Parser {
 
   [[noreturn]] void fail(const FormulaToken& token, const std::string& message) const {
     throw Error(at_character(text_, token.begin) + ": " + message);
+  }
+
+  static std::string unclosed(const Pending& open) {
+    if (open.type != Pending::Type::call) return "this '(' is never closed";
+    return "the '(' of '" + open.token.text + "(' is never closed";
   }
 
   static std::string invalid_message(const FormulaToken& token) {

@@ -16,6 +16,7 @@ struct SquareRoot : Function<1> {
 
 struct Length2 : Function<2> {
   static constexpr const char *name = "length2", *doc = "the length of the vector (a, b)";
+  static constexpr bool distance = true;  // from the origin
   template <class T>
   T eval(T a, T b) const {
     return length(a, b);
@@ -24,6 +25,7 @@ struct Length2 : Function<2> {
 
 struct Length3 : Function<3> {
   static constexpr const char *name = "length3", *doc = "the length of the vector (a, b, c)";
+  static constexpr bool distance = true;  // from the origin
   template <class T>
   T eval(T a, T b, T c) const {
     return length(a, b, c);

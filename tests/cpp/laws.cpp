@@ -118,6 +118,20 @@ const std::vector<ListedOperation>& listed_operations() {
   return all;
 }
 
+std::vector<double> partials_at(const Operation& op, const std::vector<double>& in) {
+  std::array<const double*, max_arity> at{};
+  std::array<double*, max_arity> to{};
+  std::vector<double> partial(in.size());
+  for (size_t k = 0; k < in.size(); ++k) {
+    at[k] = &in[k];
+    to[k] = &partial[k];
+  }
+  double value;
+  op.partials(at.data(), &value, to.data(), 1);
+  EXPECT_TRUE(value == op.evaluate(in.data()) || std::isnan(value));
+  return partial;
+}
+
 bool can_be_random(const Constructor& constructor) {
   for (const ParameterInfo& p : constructor.parameters) {
     if (p.required && p.type == ParameterType::text) return false;

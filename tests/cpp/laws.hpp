@@ -143,6 +143,9 @@ inline double magnitude(const Operation& op, const std::vector<double>& in, doub
   return most;
 }
 
+/// An operation's partial derivatives in double; the value that comes with them is checked.
+std::vector<double> partials_at(const Operation& op, const std::vector<double>& in);
+
 /// Degenerate, tiny, ordinary, huge, touching zero, or with infinite ends.
 inline Interval random_interval(Random& r, double most = 1e100) {
   const double centre = r.chance(0.1) ? r.spicy(most) : r.ordinary();

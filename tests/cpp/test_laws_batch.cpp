@@ -128,20 +128,6 @@ TEST(BatchLaws, InstructionSetsAgreeExactly) {
   });
 }
 
-std::vector<double> partials_at(const Operation& op, const std::vector<double>& in) {
-  std::array<const double*, max_arity> at{};
-  std::array<double*, max_arity> to{};
-  std::vector<double> partial(in.size());
-  for (size_t k = 0; k < in.size(); ++k) {
-    at[k] = &in[k];
-    to[k] = &partial[k];
-  }
-  double value;
-  op.partials(at.data(), &value, to.data(), 1);
-  EXPECT_TRUE(value == op.evaluate(in.data()) || std::isnan(value));
-  return partial;
-}
-
 // Float partials match where the exact ones hardly change within the rounding of the arguments.
 TEST(BatchLaws, FloatPartialsEqualDoublePartials) {
   laws::for_operations(laws::effort(30), [](auto, const Operation& op, Random& r) {
@@ -152,13 +138,13 @@ TEST(BatchLaws, FloatPartialsEqualDoublePartials) {
     const Result result = run(op, op.kernels(), batch);
     size_t compared = 0;
     for (size_t i = 0; i < points; ++i) {
-      const std::vector<double> in = batch.at(i), expected = partials_at(op, in);
+      const std::vector<double> in = batch.at(i), expected = laws::partials_at(op, in);
       double change = 0, most = 1;
       for (size_t k = 0; k < in.size(); ++k) {
         for (const double step : {-1e-4, 1e-4}) {
           std::vector<double> beside = in;
           beside[k] += step;
-          const std::vector<double> partial = partials_at(op, beside);
+          const std::vector<double> partial = laws::partials_at(op, beside);
           for (size_t j = 0; j < in.size(); ++j) {
             const double difference = std::abs(partial[j] - expected[j]);
             change = std::isnan(difference) ? infinity : std::max(change, difference);

@@ -32,19 +32,6 @@ std::string parameters(const Operation& op) {
   return "parameters " + testing::PrintToString(op.numbers());
 }
 
-std::vector<double> partials(const Operation& op, const std::vector<double>& in) {
-  std::array<const double*, max_arity> at{};
-  std::array<double*, max_arity> to{};
-  std::vector<double> partial(in.size());
-  for (size_t k = 0; k < in.size(); ++k) {
-    at[k] = &in[k];
-    to[k] = &partial[k];
-  }
-  double value;
-  op.partials(at.data(), &value, to.data(), 1);
-  return partial;
-}
-
 double length(const std::vector<double>& vector) {
   double squares = 0;
   for (double a : vector) squares += a * a;
@@ -100,7 +87,7 @@ TEST(BoundLaws, SlopesHoldGradients) {
     const double gain = op.gain(box.sides.data());
     EXPECT_FALSE(std::isnan(slope.length) || std::isnan(gain)) << box << parameters(op);
     for (int i = 0; i < 6; ++i) {
-      const std::vector<double> at = box.point(r), by = partials(op, at);
+      const std::vector<double> at = box.point(r), by = laws::partials_at(op, at);
       const double norm = length(by);
       if (std::isnan(norm)) continue;
       // The partials at a point are rounded, too.
@@ -182,7 +169,7 @@ TEST(BoundLaws, DistancesAreDistances) {
     EXPECT_LE(std::abs(f - g), length(apart) + 64 * 0x1p-52 * most)
         << testing::PrintToString(p) << " and " << testing::PrintToString(q) << ", "
         << parameters(op);
-    const double norm = length(partials(op, p));
+    const double norm = length(laws::partials_at(op, p));
     if (std::isnan(norm)) return;
     ++directed;
     EXPECT_NEAR(norm, 1, 1e-9) << testing::PrintToString(p) << ' ' << parameters(op);

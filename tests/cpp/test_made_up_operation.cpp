@@ -1,58 +1,21 @@
-// Adding an operation touches one place: this file adds a solid and a function, and finds them in
-// everything that is derived from the list.
+// Adding an operation touches one place: made_up_operation.hpp adds a solid and a function, and
+// here they are found in everything that is derived from the list; Python's side is
+// tests/python/test_made_up_operation.py.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "sardf/arithmetic.hpp"
-#include "sardf/constructor.hpp"
-#include "sardf/constructor_of.hpp"
+#include "made_up_operation.hpp"
+#include "povray_gen/function_printer.hpp"
+#include "povray_harness.hpp"
 #include "sardf/document.hpp"
 #include "sardf/evaluate.hpp"
 #include "sardf/scene_file.hpp"
 
 namespace sardf {
 namespace {
-
-/// A sphere whose radius shrinks along z.
-struct Pear {
-  static constexpr const char *name = "pear", *doc = "A sphere, thinner at the top.";
-  static constexpr Kind kind = Kind::solid;
-  static constexpr int arity = 3;
-  Vec3 center{};
-  double radius = 1, taper = 0.25;
-  template <class V>
-  static void parameters(V& v) {
-    v(length_of("center", "its middle"), &Pear::center);
-    v(positive_length("radius", "radius at the middle"), &Pear::radius);
-    v(Parameter{"taper", "how fast it gets thinner"}, &Pear::taper);
-  }
-  template <class T>
-  T eval(T x, T y, T z) const {
-    const T along = z - T(center[2]);
-    return T(radius) - T(taper) * along - length(x - T(center[0]), y - T(center[1]), along);
-  }
-};
-
-struct Wobble {
-  static constexpr const char *name = "wobble", *doc = "sin(a) * exp(-b * b)";
-  static constexpr Kind kind = Kind::function;
-  static constexpr int arity = 2;
-  template <class T>
-  T eval(T a, T b) const {
-    return sin(a) * exp(-square(b));
-  }
-};
-
-const Constructor& pear() {
-  if (!find_constructor("pear")) {
-    add_constructor(constructor_of_operation<Pear>());
-    add_function(make_operation(Wobble{}));
-  }
-  return *find_constructor("pear");
-}
 
 class MadeUpOperation : public testing::Test {
  protected:
@@ -105,6 +68,20 @@ TEST_F(MadeUpOperation, RecordsItsFormula) {
   EXPECT_EQ(trace[trace.result].name, "-");
   const auto is_root = [](const TraceStep& step) { return step.name == "sqrt"; };
   EXPECT_EQ(std::ranges::count_if(trace.steps(), is_root), 1);
+}
+
+TEST_F(MadeUpOperation, IsPovrayText) {
+  povray::Names names("made up");
+  povray::FunctionPrinter printer(names);
+  povray::Terms terms;
+  std::vector<int> inputs;
+  for (int i = 0; i < 3; ++i) inputs.push_back(terms.input(i));
+  Trace trace(3);
+  make_operation(Pear{{1, 0, 0}, 2, 0.5})->record(trace);
+  const std::string name = names.numbered("pear");
+  printer.declare(name, terms, terms.append(trace, inputs), 3, povray::InputNames::parameters);
+  const std::vector<double> values = evaluate_in_povray(printer.text(), {{name, {1, 3, 4}}});
+  EXPECT_NEAR(values.at(0), value, 1e-12);
 }
 
 TEST_F(MadeUpOperation, FunctionIsAWordOfFormulas) {

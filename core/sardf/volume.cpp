@@ -11,51 +11,63 @@ namespace sardf {
 namespace {
 
 constexpr int block_cells = 6;  // 6³ = 216 points fit one evaluator block
+constexpr int most_halvings = 5;
+// Of the total volume: what the halving of all cells together may change where it stops.
+constexpr double wanted_error = 3e-3;
+// Fractions that differ by less within a block are summed well enough.
+constexpr double smooth_fractions = 0.25;
 
-// The volume of the part of a unit cube where the linear function value + slope · (p - centre) is
-// not negative. With a box filter along the steepest direction this is exact for slopes along an
-// axis and right to second order elsewhere.
-double covered_share(double value, const Vec3& slope, double cell) {
-  const double rise = cell * (std::abs(slope[0]) + std::abs(slope[1]) + std::abs(slope[2]));
+// The share of a cell where the linear function value + slope · (p - centre) is not negative. With
+// a box filter along the steepest direction this is exact for slopes along an axis and right to
+// second order elsewhere.
+double covered_share(double value, const Vec3& slope, const Vec3& cell) {
+  const Vec3 across{cell[0] * std::abs(slope[0]), cell[1] * std::abs(slope[1]),
+                    cell[2] * std::abs(slope[2])};
+  const double rise = across[0] + across[1] + across[2];
   if (!(rise > 0)) return value >= 0;
   // The profile of a cube cut by a plane, between its box (axis) and diagonal form.
   const double t = std::clamp(0.5 + value / rise, 0.0, 1.0);
-  const double steepest =
-      cell * std::max({std::abs(slope[0]), std::abs(slope[1]), std::abs(slope[2])});
+  const double steepest = std::max({across[0], across[1], across[2]});
   const double box = std::clamp(0.5 + value / steepest, 0.0, 1.0);
   const double smooth = t * t * (3 - 2 * t);
   const double mix = std::clamp((rise - steepest) / (2 * steepest), 0.0, 1.0);
   return box + mix * (smooth - box);
 }
 
-struct Grid {
-  Vec3 origin;
-  double cell;
-  std::array<int, 3> blocks;
-  size_t count() const { return size_t(blocks[0]) * blocks[1] * blocks[2]; }
+/// 6³ cells.
+struct Block {
+  Vec3 lo, cell;
+
+  Vec3 side() const { return double(block_cells) * cell; }
+  Block octant(int i) const {
+    Block part{lo, 0.5 * cell};
+    for (int axis = 0; axis < 3; ++axis) {
+      if (i >> axis & 1) part.lo[axis] += part.side()[axis];
+    }
+    return part;
+  }
 };
 
-class BlockSum {
- public:
-  BlockSum(const Scene& scene, const Grid& grid)
-      : grid_(grid), field_(scene.solid()), fractions_(scene.fractions()) {}
+struct Sum {
+  std::vector<double> materials;
+  bool settled = false;  // smaller cells would not change it
+};
 
-  // Adds the materials' volumes of one block to `sum`.
-  void operator()(size_t block, std::vector<double>& sum) const {
-    const int i = int(block % grid_.blocks[0]);
-    const int j = int(block / grid_.blocks[0] % grid_.blocks[1]);
-    const int k = int(block / grid_.blocks[0] / grid_.blocks[1]);
-    const double side = block_cells * grid_.cell;
-    const Vec3 lo = grid_.origin + Vec3{i * side, j * side, k * side};
-    const Vec3 hi = lo + Vec3{side, side, side};
-    if (field_.interval({lo, hi}).hi < 0) return;
+class Summing {
+ public:
+  explicit Summing(const Scene& scene) : field_(scene.solid()), fractions_(scene.fractions()) {}
+
+  Sum of(const Block& block) const {
+    Sum sum{std::vector<double>(fractions_.outputs()), true};
+    const Interval bound = field_.interval({block.lo, block.lo + block.side()});
+    if (bound.hi < 0) return sum;
     constexpr size_t n = block_cells * block_cells * block_cells;
     double xyz[3][n], value[n], slope[3][n];
     for (size_t p = 0; p < n; ++p) {
       const size_t at[3] = {p % block_cells, p / block_cells % block_cells,
                             p / block_cells / block_cells};
       for (int axis = 0; axis < 3; ++axis)
-        xyz[axis][p] = lo[axis] + (double(at[axis]) + 0.5) * grid_.cell;
+        xyz[axis][p] = block.lo[axis] + (double(at[axis]) + 0.5) * block.cell[axis];
     }
     double* const slopes[3] = {slope[0], slope[1], slope[2]};
     field_.gradient_block(xyz[0], xyz[1], xyz[2], n, value, slopes);
@@ -63,48 +75,106 @@ class BlockSum {
     std::vector<double*> to(fractions_.outputs());
     for (size_t m = 0; m < to.size(); ++m) to[m] = &shares[m * n];
     fractions_.block(xyz[0], xyz[1], xyz[2], n, to.data());
-    const double volume = grid_.cell * grid_.cell * grid_.cell;
+    const double volume = block.cell[0] * block.cell[1] * block.cell[2];
     for (size_t p = 0; p < n; ++p) {
       const double share =
-          volume * covered_share(value[p], {slope[0][p], slope[1][p], slope[2][p]}, grid_.cell);
+          volume * covered_share(value[p], {slope[0][p], slope[1][p], slope[2][p]}, block.cell);
       if (!(share > 0)) continue;
-      for (size_t m = 0; m < to.size(); ++m) sum[m] += share * to[m][p];
+      for (size_t m = 0; m < to.size(); ++m) sum.materials[m] += share * to[m][p];
+    }
+    sum.settled = bound.lo > 0 && is_smooth(shares, n);
+    return sum;
+  }
+
+  /// Adds the block's materials to `total` and what the last halving changed to `error`; `rough` is
+  /// what of(block) gave.
+  void refine(const Block& block, const Sum& rough, double tolerance, int halvings, Sum& total,
+              double& error) const {
+    std::array<Sum, 8> parts;
+    std::vector<double> fine(rough.materials.size());
+    for (int i = 0; i < 8; ++i) {
+      parts[i] = of(block.octant(i));
+      for (size_t m = 0; m < fine.size(); ++m) fine[m] += parts[i].materials[m];
+    }
+    double change = 0;
+    for (size_t m = 0; m < fine.size(); ++m) change += std::abs(fine[m] - rough.materials[m]);
+    if (change <= tolerance || halvings == 1) {
+      for (size_t m = 0; m < fine.size(); ++m) total.materials[m] += fine[m];
+      error += change;
+      return;
+    }
+    for (int i = 0; i < 8; ++i) {
+      if (parts[i].settled) {
+        for (size_t m = 0; m < fine.size(); ++m) total.materials[m] += parts[i].materials[m];
+      } else {
+        // A surface runs through about four of the eight.
+        refine(block.octant(i), parts[i], tolerance / 4, halvings - 1, total, error);
+      }
     }
   }
 
  private:
-  Grid grid_;
+  static bool is_smooth(const std::vector<double>& shares, size_t n) {
+    for (auto of = shares.begin(); of != shares.end(); of += std::ptrdiff_t(n)) {
+      const auto [least, most] = std::minmax_element(of, of + std::ptrdiff_t(n));
+      if (*most - *least > smooth_fractions) return false;
+    }
+    return true;
+  }
+
   Evaluator field_, fractions_;
 };
+
+// Runs work(i) for i below n in parallel and reports the share [from, to].
+template <class Function>
+void run_reporting(size_t n, const Progress& progress, double from, double to, Function work) {
+  std::atomic<bool> cancelled{false};
+  std::mutex reporting;
+  size_t done = 0;
+  tbb::parallel_for(size_t(0), n, [&](size_t i) {
+    if (cancelled) return;
+    work(i);
+    const std::scoped_lock lock(reporting);
+    if (progress && !progress(from + (to - from) * double(++done) / double(n))) cancelled = true;
+  });
+  if (cancelled) throw Cancelled();
+}
 
 }  // namespace
 
 MaterialVolumes measure_volumes(const Scene& scene, int resolution, const Progress& progress) {
-  const Vec3 size = scene.bounds().size();
-  Grid grid;
-  grid.origin = scene.bounds().lo;
-  grid.cell = std::max({size[0], size[1], size[2]}) / resolution;
-  for (int axis = 0; axis < 3; ++axis) {
-    grid.blocks[axis] = int(std::ceil(size[axis] / grid.cell / block_cells));
+  const int across = (resolution + block_cells - 1) / block_cells;  // blocks along each side
+  const Vec3 cell = (1.0 / (across * block_cells)) * scene.bounds().size();
+  const size_t count = size_t(across) * across * across, materials = scene.fractions().size();
+  const auto block = [&](size_t i) {
+    const size_t at[3] = {i % across, i / across % across, i / across / across};
+    Block result{scene.bounds().lo, cell};
+    for (int axis = 0; axis < 3; ++axis) result.lo[axis] += double(at[axis]) * result.side()[axis];
+    return result;
+  };
+  const Summing summing(scene);
+  std::vector<Sum> sums(count);
+  run_reporting(count, progress, 0, 0.3, [&](size_t i) { sums[i] = summing.of(block(i)); });
+  double volume = 0;
+  std::vector<size_t> unsettled;
+  for (size_t i = 0; i < count; ++i) {
+    for (const double v : sums[i].materials) volume += v;
+    if (!sums[i].settled) unsettled.push_back(i);
   }
-  const BlockSum add(scene, grid);
-  const size_t materials = scene.fractions().size();
-  // One sum for each layer of blocks, added in order: the result does not depend on threads.
-  const size_t layer = size_t(grid.blocks[0]) * grid.blocks[1];
-  std::vector<std::vector<double>> sums(grid.blocks[2], std::vector<double>(materials, 0.0));
-  std::atomic<bool> cancelled{false};
-  int done = 0;
-  std::mutex reporting;
-  tbb::parallel_for(0, grid.blocks[2], [&](int k) {
-    for (size_t b = 0; b < layer && !cancelled; ++b) add(size_t(k) * layer + b, sums[k]);
-    const std::scoped_lock lock(reporting);
-    if (progress && !cancelled && !progress(double(++done) / grid.blocks[2])) cancelled = true;
+  // Each block has a sum of its own and they are added in order: threads change nothing.
+  const double tolerance = wanted_error * volume / double(std::max<size_t>(unsettled.size(), 1));
+  std::vector<double> errors(count);
+  run_reporting(unsettled.size(), progress, 0.3, 1, [&](size_t k) {
+    const size_t i = unsettled[k];
+    Sum total{std::vector<double>(materials), true};
+    summing.refine(block(i), sums[i], tolerance, most_halvings, total, errors[i]);
+    sums[i] = std::move(total);
   });
-  if (cancelled) throw Cancelled();
   MaterialVolumes volumes;
   volumes.materials.assign(materials, 0.0);
-  for (const auto& sum : sums) {
-    for (size_t m = 0; m < materials; ++m) volumes.materials[m] += sum[m];
+  for (size_t i = 0; i < count; ++i) {
+    for (size_t m = 0; m < materials; ++m) volumes.materials[m] += sums[i].materials[m];
+    volumes.error += errors[i];
   }
   for (double v : volumes.materials) volumes.total += v;
   return volumes;

@@ -38,8 +38,7 @@ bool append_attribute(const Scene& scene, const std::string& name,
 }  // namespace
 
 std::vector<std::string> channel_names(const Scene& scene) {
-  std::vector<std::string> names{"base_color", "roughness", "metallic",
-                                 "emission",   "fractions", "field"};
+  std::vector<std::string> names(common_channels.begin(), common_channels.end());
   for (const Attribute& attribute : scene.description().attributes) {
     names.push_back(attribute.name);
   }

@@ -61,6 +61,11 @@ void check_materials(SceneDescription& scene) {
   }
 }
 
+bool is_taken_by_channels(const std::string& name) {
+  return name.starts_with("fractions_") ||
+         std::find(common_channels.begin(), common_channels.end(), name) != common_channels.end();
+}
+
 void check_parts(SceneDescription& scene) {
   if (!scene.solid) fail(scene, "", "the scene has no solid");
   metres_per_unit(scene.units);
@@ -69,6 +74,10 @@ void check_parts(SceneDescription& scene) {
   for (const Attribute& a : scene.attributes) {
     if (!names.insert(a.name).second) {
       fail(scene, "/attributes", "there are two attributes named '" + a.name + "'");
+    }
+    if (is_taken_by_channels(a.name)) {
+      fail(scene, "/attributes/" + a.name,
+           "'" + a.name + "' names a channel of every bake; an attribute needs another name");
     }
   }
   for (const Section& section : scene.sections) {

@@ -1,6 +1,7 @@
 // A scene: a solid, what it is made of, and how it is shown. Scene files and Python both make one.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -24,6 +25,11 @@ struct Material {
   std::optional<double> density;                              // g/cm³
   std::vector<std::pair<std::string, std::string>> metadata;  // free: name, JSON text of the value
 };
+
+/// What can be baked of every scene; no attribute has such a name, or one that begins with
+/// "fractions_", the name of an image of three materials.
+inline constexpr std::array<const char*, 6> common_channels{"base_color", "roughness", "metallic",
+                                                            "emission",   "fractions", "field"};
 
 /// A scalar (one component) or vector function on the object: a field for each component, or a
 /// rule as for fractions, from which Scene makes the components.

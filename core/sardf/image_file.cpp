@@ -4,10 +4,8 @@
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -16,6 +14,7 @@
 #include <utility>
 
 #include "sardf/error.hpp"
+#include "sardf/output_file.hpp"
 
 namespace sardf {
 
@@ -158,15 +157,6 @@ void restore_order(Image& image, std::vector<std::string>& names, const std::str
     std::copy_n(&image.samples[i], pixel.size(), pixel.begin());
     for (size_t c = 0; c < from.size(); ++c) image.samples[i + c] = pixel[from[c]];
   }
-}
-
-std::string temporary_name(const std::string& path) {
-  static std::atomic<unsigned> count{0};
-  const fs::path target(path);
-  return (target.parent_path() /
-          ("." + target.filename().string() + "." + std::to_string(getpid()) + "-" +
-           std::to_string(count++) + ".partial"))
-      .string();
 }
 
 // A file that remembers failed writes: OpenImageIO 2.4's PNG writer does not look at their result

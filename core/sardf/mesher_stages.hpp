@@ -12,7 +12,7 @@
 
 #include "sardf/mesh.hpp"
 #include "sardf/mesher_field.hpp"
-#include "sardf/mesher_work.hpp"
+#include "sardf/work.hpp"
 
 namespace sardf::mesher {
 

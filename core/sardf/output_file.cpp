@@ -13,8 +13,6 @@ namespace sardf {
 
 namespace fs = std::filesystem;
 
-namespace {
-
 std::string temporary_name(const std::string& path) {
   static std::atomic<unsigned> count{0};
   const fs::path target(path);
@@ -23,8 +21,6 @@ std::string temporary_name(const std::string& path) {
   name += '.' + std::to_string(getpid()) + '-' + std::to_string(count++) + ".partial";
   return (target.parent_path() / name).string();
 }
-
-}  // namespace
 
 OutputFile::OutputFile(std::string path)
     : path_(std::move(path)), temporary_(temporary_name(path_)) {

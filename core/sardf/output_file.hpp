@@ -6,6 +6,9 @@
 
 namespace sardf {
 
+/// A hidden name in the same folder that no other call in any process gets.
+std::string temporary_name(const std::string& path);
+
 /// Writes to a temporary file in the folder of `path`; commit() renames it, and without commit()
 /// it is removed. Throws Error that names the path and the reason.
 class OutputFile {

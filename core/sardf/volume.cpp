@@ -1,10 +1,8 @@
 #include "sardf/volume.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
-#include <atomic>
-#include <mutex>
+
+#include "sardf/work.hpp"
 
 namespace sardf {
 
@@ -125,21 +123,6 @@ class Summing {
   Evaluator field_, fractions_;
 };
 
-// Runs work(i) for i below n in parallel and reports the share [from, to].
-template <class Function>
-void run_reporting(size_t n, const Progress& progress, double from, double to, Function work) {
-  std::atomic<bool> cancelled{false};
-  std::mutex reporting;
-  size_t done = 0;
-  tbb::parallel_for(size_t(0), n, [&](size_t i) {
-    if (cancelled) return;
-    work(i);
-    const std::scoped_lock lock(reporting);
-    if (progress && !progress(from + (to - from) * double(++done) / double(n))) cancelled = true;
-  });
-  if (cancelled) throw Cancelled();
-}
-
 }  // namespace
 
 MaterialVolumes measure_volumes(const Scene& scene, int resolution, const Progress& progress) {
@@ -154,7 +137,9 @@ MaterialVolumes measure_volumes(const Scene& scene, int resolution, const Progre
   };
   const Summing summing(scene);
   std::vector<Sum> sums(count);
-  run_reporting(count, progress, 0, 0.3, [&](size_t i) { sums[i] = summing.of(block(i)); });
+  Work work(progress);
+  work.stage(0.3);
+  work.run(count, 1, [&](size_t i, size_t) { sums[i] = summing.of(block(i)); });
   double volume = 0;
   std::vector<size_t> unsettled;
   for (size_t i = 0; i < count; ++i) {
@@ -164,7 +149,8 @@ MaterialVolumes measure_volumes(const Scene& scene, int resolution, const Progre
   // Each block has a sum of its own and they are added in order: threads change nothing.
   const double tolerance = wanted_error * volume / double(std::max<size_t>(unsettled.size(), 1));
   std::vector<double> errors(count);
-  run_reporting(unsettled.size(), progress, 0.3, 1, [&](size_t k) {
+  work.stage(1);
+  work.run(unsettled.size(), 1, [&](size_t k, size_t) {
     const size_t i = unsettled[k];
     Sum total{std::vector<double>(materials), true};
     summing.refine(block(i), sums[i], tolerance, most_halvings, total, errors[i]);

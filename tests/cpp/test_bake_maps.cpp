@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "bake_scenes.hpp"
+#include "error_of.hpp"
 #include "sardf/error.hpp"
 
 namespace sardf::test {
@@ -57,15 +58,6 @@ double largest_error(const Mesh& mesh, const Image& image) {
       worst = std::max(worst, std::abs(lookup.of(image, c) - p.position[c]));
   }
   return worst;
-}
-
-std::string error_of(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const Error& e) {
-    return e.message;
-  }
-  return "no error";
 }
 
 TEST(BakeMap, TexelsAreWhereTheConventionSays) {

@@ -15,7 +15,7 @@
 #include <functional>
 #include <random>
 
-#include "sardf/error.hpp"
+#include "error_of.hpp"
 
 namespace sardf {
 namespace {
@@ -51,15 +51,6 @@ Image random_image(int width, int height, int channels, float low = 0, float hig
   image.samples.resize(size_t(width) * height * channels);
   for (float& sample : image.samples) sample = value(random);
   return image;
-}
-
-std::string error_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(Srgb, FollowsThePublishedCurve) {

@@ -9,6 +9,7 @@
 #include <functional>
 #include <optional>
 
+#include "error_of.hpp"
 #include "povray_gen/run.hpp"
 #include "povray_gen/scene_text.hpp"
 #include "povray_harness.hpp"
@@ -29,15 +30,6 @@ const Expression X = coordinate(0), Y = coordinate(1), Z = coordinate(2);
 template <class Op>
 Expression in_space(const Op& op) {
   return call(make_operation(op), {X, Y, Z});
-}
-
-std::string error_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 /// S3 of the benchmarks: a plate with a bore and four bolt holes and a ring, rounded by SARDF.

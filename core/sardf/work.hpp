@@ -1,4 +1,4 @@
-// Loops of the mesher on all threads, with progress and cancel.
+// Loops on all threads, with progress and cancel.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -10,7 +10,7 @@
 
 #include "sardf/progress.hpp"
 
-namespace sardf::mesher {
+namespace sardf {
 
 class Work {
  public:
@@ -34,7 +34,8 @@ class Work {
       ++done;
       if (progress_ && !report(double(done) / double(parts))) cancelled = true;
     });
-    if (cancelled) throw Cancelled();
+    // The last part's report may have been left out for another's.
+    if (cancelled || (progress_ && !report(1))) throw Cancelled();
   }
 
  private:
@@ -51,4 +52,4 @@ class Work {
   double from_ = 0, to_ = 0, shown_ = 0;
 };
 
-}  // namespace sardf::mesher
+}  // namespace sardf

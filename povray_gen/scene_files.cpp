@@ -34,7 +34,7 @@ void write_files(const Scene& scene, const SceneFiles& files) {
   text.title = d.title.empty() ? stem : d.title;
   text.solid = scene.drawn();
   text.bounds = scene.bounds();
-  for (const NamedField& named : d.fields) {
+  for (const NamedField& named : scene.fields()) {
     text.fields.push_back({named.name, named.field.expression()});
   }
   text.color = scene.base_color();

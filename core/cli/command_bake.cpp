@@ -1,13 +1,14 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
+#include <map>
 
 #include "cli/commands.hpp"
+#include "cli/scene_option.hpp"
 #include "sardf/bake_channels.hpp"
 #include "sardf/error.hpp"
 #include "sardf/image_file.hpp"
 #include "sardf/mesh_file.hpp"
-#include "sardf/scene_file.hpp"
 #include "sardf/surface.hpp"
 
 namespace sardf {
@@ -15,10 +16,20 @@ namespace sardf {
 namespace {
 
 struct Options {
-  std::string scene, output, format = "exr";
+  SceneOption scene;
+  std::string output, format = "exr";
   std::vector<std::string> channels{"base_color", "roughness", "metallic", "fractions"};
   SurfaceOptions surface;
 };
+
+struct Format {
+  const char* extension;
+  Depth depth;
+};
+const std::map<std::string, Format> formats{{"exr", {".exr", Depth::float32}},
+                                            {"png16", {".png", Depth::byte16}},
+                                            {"png8", {".png", Depth::byte8}},
+                                            {"tx", {".tx", Depth::float32}}};
 
 void make_folder(const std::string& path) {
   std::error_code error;
@@ -36,7 +47,7 @@ std::vector<std::string> names_of(const Scene& scene, const BakeChannel& channel
 }
 
 void bake_to_files(const Options& options) {
-  const Scene scene(read_scene(options.scene), terminal_progress("finding bounds"));
+  const Scene scene = options.scene.read(terminal_progress("finding bounds"));
   const std::vector<BakeChannel> channels = scene_channels(scene, options.channels);
   make_folder(options.output);
   const Mesh mesh = make_surface(scene, options.surface, terminal_progress("meshing"));
@@ -46,13 +57,15 @@ void bake_to_files(const Options& options) {
   const auto write = [&](size_t k, Image&& image, const std::vector<unsigned char>& covered) {
     fill_uncovered(image, covered);
     const bool color = is_color_channel(channels[k].name);
-    const bool exr = options.format == "exr";
-    const Depth depth = exr                         ? Depth::float32
-                        : options.format == "png16" ? Depth::byte16
-                                                    : Depth::byte8;
-    const std::string path = folder / (channels[k].name + (exr ? ".exr" : ".png"));
-    write_image(path, image, color ? Meaning::color : Meaning::data, depth,
-                names_of(scene, channels[k]));
+    const Meaning meaning = color ? Meaning::color : Meaning::data;
+    const std::vector<std::string> names = names_of(scene, channels[k]);
+    const Format& format = formats.at(options.format);
+    const std::string path = folder / (channels[k].name + format.extension);
+    if (options.format == "tx") {
+      write_texture(path, image, meaning, names);
+    } else {
+      write_image(path, image, meaning, format.depth, names);
+    }
     std::cout << path << "\n";
   };
   bake(texels, options.surface.sections ? scene.drawn() : scene.solid(), channels, write,
@@ -67,7 +80,7 @@ void bake_to_files(const Options& options) {
 void add_bake(CLI::App& app) {
   CLI::App* command = app.add_subcommand("bake", "Bake materials into textures, beside the mesh");
   const auto options = std::make_shared<Options>();
-  command->add_option("scene", options->scene, "Scene file; - for standard input")->required();
+  options->scene.add_to(*command);
   command->add_option("-o,--output", options->output, "Folder to write to")->required();
   command->add_option("--size", options->surface.texture_size, "Texels along each side")
       ->check(CLI::Range(16, 16384))
@@ -81,8 +94,10 @@ void add_bake(CLI::App& app) {
                    "base_color, roughness, metallic, emission, fractions, field, or attributes")
       ->delimiter(',')
       ->capture_default_str();
-  command->add_option("--format", options->format, "exr (32-bit, linear), png16 or png8")
-      ->check(CLI::IsMember({"exr", "png16", "png8"}))
+  command
+      ->add_option("--format", options->format,
+                   "exr (32-bit, linear), png16, png8, or tx (mip-mapped tiles)")
+      ->check(CLI::IsMember(formats))
       ->capture_default_str();
   command->add_flag("!--no-section", options->surface.sections, "Do not cut the part open");
   command->callback([options] { bake_to_files(*options); });

@@ -3,11 +3,14 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <set>
 
 #include "cli/commands.hpp"
+#include "cli/scene_option.hpp"
 #include "sardf/certify.hpp"
+#include "sardf/constructor.hpp"
+#include "sardf/contour.hpp"
 #include "sardf/scene.hpp"
-#include "sardf/scene_file.hpp"
 #include "sardf/volume.hpp"
 
 namespace sardf {
@@ -15,7 +18,7 @@ namespace sardf {
 namespace {
 
 struct Options {
-  std::string scene;
+  SceneOption scene;
   int resolution = 72;
 };
 
@@ -80,19 +83,62 @@ void add_volumes(Table& table, const Scene& scene, int resolution) {
   }
 }
 
-void add_fields(Table& table, const Scene& scene) {
-  table.row("fields", "distance inside, outside");
-  const auto line = [&table](const std::string& label, const Field& field) {
-    table.row("  " + label, std::string(name(field.quality().inside)) + ", " +
-                                name(field.quality().outside) + ", error bound " +
-                                text(certified_error(field.expression())));
-  };
-  for (const NamedField& named : scene.description().fields) line(named.name, named.field);
-  line("(solid)", scene.description().solid);
+// The fields that a field is made of, in the order of its parameters.
+std::vector<Field> parts_of(const Field& field) {
+  std::vector<Field> parts;
+  if (!field.construction()) return parts;
+  for (const Value& value : field.construction()->arguments) {
+    if (const auto* one = std::get_if<Field>(&value)) parts.push_back(*one);
+    if (const auto* all = std::get_if<std::vector<Field>>(&value)) {
+      parts.insert(parts.end(), all->begin(), all->end());
+    }
+    if (const auto* sections = std::get_if<std::vector<PlaneSection>>(&value)) {
+      for (const PlaneSection& section : *sections) parts.push_back(section.field);
+    }
+  }
+  return parts;
 }
 
+// What is accepted, but may not be what was meant.
+std::string remark(const Field& field) {
+  const Construction* made = field.construction();
+  if (!made || !made->constructor || made->constructor->group != "plane") return "";
+  for (const Value& value : made->arguments) {
+    const auto* contour = std::get_if<Contour>(&value);
+    if (contour && doubled_area(*contour) < 0) return "; its contour runs clockwise";
+  }
+  return "";
+}
+
+// Every node of every tree, each named field once with its unnamed parts below it.
+class FieldRows {
+ public:
+  FieldRows(Table& table, const Scene& scene) : table_(table) {
+    for (const NamedField& named : scene.fields()) names_.insert(named.field.construction());
+    table.row("fields", "distance inside, outside");
+    for (const NamedField& named : scene.fields()) add(named.name, named.field, 1);
+    const bool is_named = names_.count(scene.solid_field().construction()) > 0;
+    if (!is_named) add("(solid)", scene.solid_field(), 1);
+  }
+
+ private:
+  void add(const std::string& label, const Field& field, size_t depth) {
+    table_.row(std::string(2 * depth, ' ') + label,
+               std::string(name(field.quality().inside)) + ", " + name(field.quality().outside) +
+                   ", error bound " + text(certified_error(field.expression())) + remark(field));
+    for (const Field& part : parts_of(field)) {
+      if (!part.construction() || names_.count(part.construction())) continue;
+      const Constructor* constructor = part.construction()->constructor;
+      add(constructor ? constructor->name : "formula", part, depth + 1);
+    }
+  }
+
+  Table& table_;
+  std::set<const Construction*> names_;
+};
+
 void check(const Options& options) {
-  const Scene scene(read_scene(options.scene), terminal_progress("finding bounds"));
+  const Scene scene = options.scene.read(terminal_progress("finding bounds"));
   const SceneDescription& d = scene.description();
   Table table;
   table.row("title", d.title);
@@ -106,7 +152,7 @@ void check(const Options& options) {
     table.row("Lipschitz", text(certified_lipschitz(solid, scene.bounds())));
   }
   table.row("error bound", text(certified_error(scene.solid())));
-  add_fields(table, scene);
+  FieldRows(table, scene);
   if (!d.sections.empty()) table.row("sections", std::to_string(d.sections.size()));
   table.print();
 }
@@ -117,7 +163,7 @@ void add_check(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "check", "Print what a scene is: bounds, volumes, exactness; or its errors");
   const auto options = std::make_shared<Options>();
-  command->add_option("scene", options->scene, "Scene file; - for standard input")->required();
+  options->scene.add_to(*command);
   command
       ->add_option("--resolution", options->resolution,
                    "Cells along each side of the bounds, for volumes")

@@ -7,17 +7,18 @@
 #include <iostream>
 
 #include "cli/commands.hpp"
+#include "cli/scene_option.hpp"
 #include "cli/write_text.hpp"
 #include "sardf/error.hpp"
 #include "sardf/scene.hpp"
-#include "sardf/scene_file.hpp"
 
 namespace sardf {
 
 namespace {
 
 struct Options {
-  std::string scene, points, output = "-", outside = "extend";
+  SceneOption scene;
+  std::string points, output = "-", outside = "extend";
 };
 
 const char* skip_blanks(const char* at, const char* end) {
@@ -85,10 +86,10 @@ void append(std::string& text, double value) {
 }
 
 void evaluate(const Options& options) {
-  if (options.scene == "-" && options.points == "-") {
+  if (options.scene.path == "-" && options.points == "-") {
     throw Error("standard input cannot be both the scene and the points");
   }
-  const Scene scene(read_scene(options.scene));
+  const Scene scene = options.scene.read();
   const std::vector<double> points = read_points(options.points);
   const size_t n = points.size() / 3, materials = scene.fractions().size();
   std::vector<Expression> outputs{scene.solid()};
@@ -119,7 +120,7 @@ void evaluate(const Options& options) {
 void add_eval(CLI::App& app) {
   CLI::App* command = app.add_subcommand("eval", "Values at points: field, fractions, attributes");
   const auto options = std::make_shared<Options>();
-  command->add_option("scene", options->scene, "Scene file; - for standard input")->required();
+  options->scene.add_to(*command);
   command->add_option("--points", options->points, "CSV of x,y,z; - for standard input")
       ->required();
   command->add_option("-o,--output", options->output, "CSV to write; - for standard output")

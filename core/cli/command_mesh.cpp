@@ -2,8 +2,8 @@
 #include <iostream>
 
 #include "cli/commands.hpp"
+#include "cli/scene_option.hpp"
 #include "sardf/mesh_file.hpp"
-#include "sardf/scene_file.hpp"
 #include "sardf/surface.hpp"
 
 namespace sardf {
@@ -11,7 +11,8 @@ namespace sardf {
 namespace {
 
 struct Options {
-  std::string scene, output;
+  SceneOption scene;
+  std::string output;
   SurfaceOptions surface;
 };
 
@@ -37,7 +38,7 @@ MeshAttributes vertex_attributes(const Scene& scene, const Mesh& mesh) {
 
 void mesh(const Options& options) {
   check_mesh_path(options.output);
-  const Scene scene(read_scene(options.scene), terminal_progress("finding bounds"));
+  const Scene scene = options.scene.read(terminal_progress("finding bounds"));
   const Mesh made = make_surface(scene, options.surface, terminal_progress("meshing"));
   write_mesh(options.output, made, vertex_attributes(scene, made), scene.metres_per_unit());
   std::cout << options.output << ": " << made.vertices.size() << " vertices, " << made.faces.size()
@@ -49,7 +50,7 @@ void mesh(const Options& options) {
 void add_mesh(CLI::App& app) {
   CLI::App* command = app.add_subcommand("mesh", "Write the surface as glb, ply or obj");
   const auto options = std::make_shared<Options>();
-  command->add_option("scene", options->scene, "Scene file; - for standard input")->required();
+  options->scene.add_to(*command);
   command->add_option("-o,--output", options->output, "part.glb, part.ply or part.obj")->required();
   command->add_option("--resolution", options->surface.resolution, "Cells along the longest side")
       ->capture_default_str();

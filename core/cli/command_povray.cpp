@@ -3,23 +3,24 @@
 
 #include "cli/commands.hpp"
 #include "cli/render_povray.hpp"
+#include "cli/scene_option.hpp"
 #include "povray_gen/run.hpp"
 #include "sardf/camera_file.hpp"
 #include "sardf/error.hpp"
-#include "sardf/scene_file.hpp"
 
 namespace sardf {
 
 namespace {
 
 struct Options {
-  std::string scene, camera, image;
+  SceneOption scene;
+  std::string camera, image;
   povray::SceneFiles files;
 };
 
 void write_and_render(Options& options) {
   if (!options.image.empty()) povray::find_povray();
-  const Scene scene(read_scene(options.scene), terminal_progress("finding bounds"));
+  const Scene scene = options.scene.read(terminal_progress("finding bounds"));
   options.files.camera = options.camera.empty()
                              ? scene_camera(scene, options.files.width, options.files.height)
                              : read_camera(options.camera);
@@ -36,7 +37,7 @@ void add_povray(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("povray", "Write the scene as POV-Ray functions; render it");
   const auto options = std::make_shared<Options>();
-  command->add_option("scene", options->scene, "Scene file; - for standard input")->required();
+  options->scene.add_to(*command);
   command->add_option("-o,--output", options->files.path, "part.pov; part.inc is written beside it")
       ->required();
   command->add_option("--render", options->image, "Also render to this .exr (linear) or .png");

@@ -81,6 +81,33 @@ std::vector<Field> fields_from(const ParameterInfo& p, const py::handle& value) 
   return out;
 }
 
+// {"field": field, "z": height}, or the pair (field, height).
+PlaneSection section_from(const ParameterInfo& p, const py::handle& value) {
+  py::object field, z;
+  if (py::isinstance<py::dict>(value)) {
+    const auto given = py::reinterpret_borrow<py::dict>(value);
+    if (given.size() != 2 || !given.contains("field") || !given.contains("z")) wrong_type(p, value);
+    field = given["field"];
+    z = given["z"];
+  } else {
+    if (!py::isinstance<py::sequence>(value) || py::isinstance<py::str>(value) ||
+        py::len(value) != 2) {
+      wrong_type(p, value);
+    }
+    const auto pair = py::reinterpret_borrow<py::sequence>(value);
+    field = pair[0];
+    z = pair[1];
+  }
+  return {field_from(field, p.name), number_from(p, z)};
+}
+
+std::vector<PlaneSection> sections_from(const ParameterInfo& p, const py::handle& value) {
+  if (py::isinstance<py::str>(value) || !py::isinstance<py::iterable>(value)) wrong_type(p, value);
+  std::vector<PlaneSection> out;
+  for (const py::handle& element : value) out.push_back(section_from(p, element));
+  return out;
+}
+
 BlendPointer blend_from(const ParameterInfo& p, const py::handle& value) {
   if (!py::isinstance<Blend>(value)) wrong_type(p, value);
   return py::cast<BlendPointer>(value);
@@ -157,6 +184,8 @@ Value value_from(const ParameterInfo& p, const py::handle& value) {
       return field_from(value, p.name);
     case ParameterType::fields:
       return fields_from(p, value);
+    case ParameterType::sections:
+      return sections_from(p, value);
     default:
       return value.is_none() ? current_blend() : blend_from(p, value);
   }

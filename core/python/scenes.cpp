@@ -122,6 +122,18 @@ ScenePointer with_section(const Scene& scene, const Field& remove, std::vector<F
   return std::make_shared<Scene>(std::move(description));
 }
 
+py::dict fields(const Scene& scene) {
+  py::dict all;
+  for (const NamedField& named : scene.fields()) all[named.name.c_str()] = named.field;
+  return all;
+}
+
+ScenePointer with_blend(const Scene& scene, const std::shared_ptr<Blend>& blend) {
+  SceneDescription description = scene.description();
+  description.blend = blend;
+  return std::make_shared<Scene>(std::move(description));
+}
+
 ScenePointer from_json(const std::string& text, const std::map<std::string, Field>& fields) {
   return std::make_shared<Scene>(parse_scene(text, "", fields));
 }
@@ -144,7 +156,8 @@ void bind_scenes(py::module_& m) {
       .def_property_readonly("units", [](const Scene& s) { return s.description().units; })
       .def_property_readonly("metres_per_unit", &Scene::metres_per_unit)
       .def_property_readonly("materials", &Scene::material_names, "Names, in order.")
-      .def_property_readonly("solid", [](const Scene& s) { return s.description().solid; })
+      .def_property_readonly("solid", &Scene::solid_field)
+      .def_property_readonly("fields", &fields, "{name: Field} of the scene's named fields.")
       .def_property_readonly(
           "drawn", [](const Scene& s) { return Field(s.drawn(), {}, nullptr); },
           "The solid with its sections cut away.")
@@ -177,6 +190,9 @@ void bind_scenes(py::module_& m) {
            "Writes path (.pov) and the .inc beside it, for POV-Ray 3.7; renders them to `render` "
            "(.exr or .png) unless it is empty. camera: as camera() gives it; look: shaded, flat "
            "(the colours alone) or normals.")
+      .def("with_blend", &with_blend, py::arg("blend"),
+           "The scene with every union, intersection and difference joined by `blend` in place of "
+           "its own.")
       .def("section", &with_section, py::arg("remove"), py::arg("keep") = std::vector<Field>{},
            "The scene with one more cut: `remove` is taken away, the `keep` solids stay whole.");
   m.def(

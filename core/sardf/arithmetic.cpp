@@ -73,7 +73,10 @@ Expression affine(const std::array<Expression, 3>& xyz, const Vec3& row, double 
   Affine map;
   map.row = row;
   map.offset = offset;
-  return call(make_operation(map), {xyz[0], xyz[1], xyz[2]});
+  // What does not count is no input: a plane field turned about z stays one.
+  std::array<Expression, 3> used;
+  for (int axis = 0; axis < 3; ++axis) used[axis] = row[axis] == 0 ? constant(0) : xyz[axis];
+  return call(make_operation(map), used);
 }
 
 }  // namespace sardf

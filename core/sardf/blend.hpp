@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,5 +18,13 @@ struct Blend {
   bool is_min_max = false;
 };
 using BlendPointer = std::shared_ptr<const Blend>;
+
+/// The expressions with every union, intersection and difference of two fields joined by `blend`
+/// in place of its own; parts they share stay shared. min and max in formulas stay what they are.
+std::vector<Expression> joined_by(const Blend& blend, std::span<const Expression> expressions);
+Expression joined_by(const Blend& blend, const Expression& expression);
+/// The same with plain minima and maxima, which no later joined_by replaces: the tree that an
+/// approximate distance is measured against (sardf paper, 3.2).
+Expression without_blends(const Expression& expression);
 
 }  // namespace sardf

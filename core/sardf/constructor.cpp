@@ -3,6 +3,8 @@
 #include "sardf/constructor_of.hpp"
 #include "sardf/ops.hpp"
 #include "sardf/shapes_combine.hpp"
+#include "sardf/shapes_contour.hpp"
+#include "sardf/shapes_domain.hpp"
 #include "sardf/shapes_transform.hpp"
 
 namespace sardf {
@@ -30,7 +32,9 @@ Registry listed() {
     all.constructors.push_back(constructor_of_shape<Shape>());
   };
   CombineShapes::for_each(add_shape);
+  ContourShapes::for_each(add_shape);
   TransformShapes::for_each(add_shape);
+  DomainShapes::for_each(add_shape);
   BlendList::for_each(
       [&]<class B>(std::type_identity<B>) { all.blends.push_back(blend_type_of<B>()); });
   return all;
@@ -73,6 +77,11 @@ struct Check {
         throw Error(p.name + " is the zero vector; a direction such as [0, 0, 1] is accepted");
       }
     }
+  }
+  void operator()(const PlaneSection& section) const {
+    ParameterInfo height = p;
+    height.name = "the height z of a section";
+    check_number(height, section.z);
   }
   template <class T>
   void operator()(const std::vector<T>& list) const {
@@ -136,6 +145,8 @@ std::string type_name(ParameterType type) {
       return "a field";
     case ParameterType::fields:
       return "a list of fields";
+    case ParameterType::sections:
+      return "a list of objects such as {\"field\": \"contour\", \"z\": 2}";
     default:
       return "a blend";
   }

@@ -28,6 +28,7 @@ enum class ParameterType {
   points3,
   field,
   fields,
+  sections,
   blend,
 };
 

@@ -30,6 +30,7 @@ constexpr ParameterType parameter_type() {
   if constexpr (std::is_same_v<Member, std::vector<Vec3>>) return ParameterType::points3;
   if constexpr (std::is_same_v<Member, Field>) return ParameterType::field;
   if constexpr (std::is_same_v<Member, std::vector<Field>>) return ParameterType::fields;
+  if constexpr (std::is_same_v<Member, std::vector<PlaneSection>>) return ParameterType::sections;
   if constexpr (std::is_same_v<Member, BlendPointer>) return ParameterType::blend;
 }
 

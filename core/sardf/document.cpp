@@ -112,6 +112,8 @@ std::string rule_type_text(RuleParameterType type) {
   switch (type) {
     case RuleParameterType::number:
       return "a number";
+    case RuleParameterType::text:
+      return "a string";
     case RuleParameterType::field:
     case RuleParameterType::feature:
       return "a field";
@@ -137,9 +139,11 @@ void add_rule_parameters(std::string& to, const std::vector<RuleParameter>& info
       name += key;
     }
     const auto* number = std::get_if<double>(&p.default_value);
+    const auto* word = std::get_if<std::string>(&p.default_value);
     add_row(to, name, accepted_text(rule_type_text(p.type), p.unit, p.range, p.at_least),
             p.required ? "required"
             : number   ? number_text(*number)
+            : word     ? '"' + *word + '"'
                        : "none",
             p.doc);
     add_rule_parameters(to, p.record, p.name + "[].");

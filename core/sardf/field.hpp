@@ -47,10 +47,16 @@ class Field {
   std::shared_ptr<const Construction> construction_;
 };
 
+/// A plane field at a height.
+struct PlaneSection {
+  Field field;
+  double z = 0;
+};
+
 /// The value of one parameter. Axes are vectors here; monostate is an optional value not given.
-using Value =
-    std::variant<std::monostate, bool, double, std::string, Vec2, Vec3, std::array<double, 4>,
-                 std::vector<Vec2>, std::vector<Vec3>, Field, std::vector<Field>, BlendPointer>;
+using Value = std::variant<std::monostate, bool, double, std::string, Vec2, Vec3,
+                           std::array<double, 4>, std::vector<Vec2>, std::vector<Vec3>, Field,
+                           std::vector<Field>, std::vector<PlaneSection>, BlendPointer>;
 
 struct Constructor;
 

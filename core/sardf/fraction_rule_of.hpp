@@ -30,6 +30,7 @@ struct IsRecords<std::vector<Element>>
 template <class Member>
 constexpr RuleParameterType rule_parameter_type() {
   if constexpr (std::is_same_v<Member, double>) return RuleParameterType::number;
+  if constexpr (std::is_same_v<Member, std::string>) return RuleParameterType::text;
   if constexpr (std::is_same_v<Member, Field>) return RuleParameterType::field;
   if constexpr (std::is_same_v<Member, FeatureField>) return RuleParameterType::feature;
   if constexpr (std::is_same_v<Member, Influence>) return RuleParameterType::influence;
@@ -49,7 +50,7 @@ std::vector<RuleParameter> rule_parameters() {
     RuleParameter made{
         p.name, p.doc, p.unit, p.range, p.required, p.at_least, rule_parameter_type<Member>(),
         {},     {}};
-    if constexpr (std::is_same_v<Member, double>) {
+    if constexpr (std::is_same_v<Member, double> || std::is_same_v<Member, std::string>) {
       if (!p.required) made.default_value = defaults.*member;
     }
     if constexpr (IsRecords<Member>::value) {

@@ -250,35 +250,71 @@ Expression place_of_largest(const std::vector<Partition::Part>& of) {
 
 }  // namespace
 
+namespace {
+
+// How far each part counts at a point that it contains, or, with a width, is near to.
+std::vector<Expression> presence(const Partition& partition, const Expression& tolerance) {
+  std::vector<Expression> in;
+  for (const Partition::Part& part : partition.of) {
+    const Expression& f = part.solid.expression();
+    in.push_back(partition.blend_width == 0
+                     ? less_equal(-tolerance, f)
+                     : clamp01(constant(1) + (f + tolerance) / constant(partition.blend_width)));
+  }
+  return in;
+}
+
+// What each part takes of what those with precedence leave over.
+std::vector<Expression> in_turn(const std::vector<Expression>& in, bool from_last) {
+  std::vector<Expression> taken(in.size());
+  Expression left = constant(1);
+  for (size_t k = 0; k < in.size(); ++k) {
+    const size_t i = from_last ? in.size() - 1 - k : k;
+    taken[i] = left * in[i];
+    left = left * (constant(1) - in[i]);
+  }
+  return taken;
+}
+
+// 1 for the part with the largest field, falling to 0 for one that is smaller by the width.
+std::vector<Expression> by_depth(const Partition& partition) {
+  Expression largest = partition.of[0].solid.expression();
+  for (const Partition::Part& part : partition.of) largest = max(largest, part.solid.expression());
+  std::vector<Expression> shares;
+  for (const Partition::Part& part : partition.of) {
+    shares.push_back(clamp01(constant(1) + (part.solid.expression() - largest) /
+                                               constant(partition.blend_width)));
+  }
+  return shares;
+}
+
+}  // namespace
+
+void Partition::check() const {
+  const std::vector<std::string> rules{"first", "last", "mean", "max"};
+  if (std::find(rules.begin(), rules.end(), conflict) == rules.end()) {
+    throw Error("conflict is '" + conflict + "'; accepted are 'first', 'last', 'mean' and 'max'" +
+                did_you_mean(conflict, rules));
+  }
+}
+
 std::vector<WeightedPart> Partition::parts(double diagonal) const {
-  const Expression tolerance = constant(in_region * diagonal);
-  Expression nearest = place_of_largest(of);
+  const Expression nearest = place_of_largest(of);
+  const auto alone = [&](size_t i) { return function("equal", {nearest, constant(double(i))}); };
   std::vector<WeightedPart> all;
-  if (blend_width == 0) {
-    for (size_t i = of.size(); i-- > 0;) {
-      const Expression in = less_equal(-tolerance, of[i].solid.expression());
-      nearest = select(in, constant(double(i)), nearest);
-    }
-    for (size_t i = 0; i < of.size(); ++i) {
-      all.push_back({function("equal", {nearest, constant(double(i))}), of[i].fractions});
-    }
+  if (conflict == "max" && blend_width == 0) {
+    for (size_t i = 0; i < of.size(); ++i) all.push_back({alone(i), of[i].fractions});
     return all;
   }
-  // A part counts fully inside and fades outside of it, so that nothing depends on the distance
-  // to an outer face that parts share. What is left over goes to all in proportion.
-  Expression left = constant(1);
-  std::vector<Expression> weights;
-  for (const Part& part : of) {
-    const Expression in =
-        clamp01(constant(1) + (part.solid.expression() + tolerance) / constant(blend_width));
-    weights.push_back(left * in);
-    left = left * (constant(1) - in);
-  }
+  const std::vector<Expression> in = presence(*this, constant(in_region * diagonal));
+  const std::vector<Expression> weights = conflict == "max"    ? by_depth(*this)
+                                          : conflict == "mean" ? in
+                                                               : in_turn(in, conflict == "last");
+  // What is left over goes to all in proportion; where there is nothing, the nearest counts.
   const Expression total = sum(weights);
   for (size_t i = 0; i < of.size(); ++i) {
-    const Expression alone = function("equal", {nearest, constant(double(i))});
     const Expression share = weights[i] / max(total, constant(1e-30));
-    all.push_back({select(less(constant(1e-30), total), share, alone), of[i].fractions});
+    all.push_back({select(less(constant(1e-30), total), share, alone(i)), of[i].fractions});
   }
   return all;
 }

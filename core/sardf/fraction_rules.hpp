@@ -196,8 +196,9 @@ struct Bands {
 struct Partition {
   static constexpr const char *name = "partition",
                               *doc =
-                                  "Parts of space: the first that contains the point counts; "
-                                  "where none does, the one with the largest field.";
+                                  "Parts of space. Where several contain a point, the conflict "
+                                  "rule decides; where none does, the one with the largest field "
+                                  "counts.";
   static constexpr RuleUse use = RuleUse::both;
   struct Part {
     Field solid;
@@ -209,17 +210,22 @@ struct Partition {
     }
   };
   std::vector<Part> of;
+  std::string conflict = "first";
   double blend_width = 0;
   template <class V>
   static void parameters(V& v) {
-    v(Parameter{"of", "the parts, in order of precedence", Unit::none, Range::any, true, 1},
-      &Partition::of);
+    v(Parameter{"of", "the parts", Unit::none, Range::any, true, 1}, &Partition::of);
     v(Parameter{"blend_width",
-                "the distance outside a part over which it fades into what follows; 0: a sharp "
-                "border",
+                "the distance outside a part over which it fades into the others; with 'max' the "
+                "difference of depths; 0: a sharp border",
                 Unit::length, Range::non_negative},
       &Partition::blend_width);
+    v(Parameter{"conflict",
+                "which part counts where several contain the point: the 'first' or the 'last', the "
+                "'mean' of all of them, or with 'max' the one in which it lies deepest"},
+      &Partition::conflict);
   }
+  void check() const;
   std::vector<WeightedPart> parts(double diagonal) const;
 };
 

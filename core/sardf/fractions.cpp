@@ -111,6 +111,9 @@ Fractions make_fractions(const std::string& rule, std::vector<RuleValue> argumen
     for (const RuleType& known : fraction_rules()) names.push_back(known.name);
     throw Error("there is no rule '" + rule + "'" + did_you_mean(rule, names));
   }
+  for (size_t i = arguments.size(); i < type->parameters.size(); ++i) {
+    arguments.push_back(type->parameters[i].default_value);
+  }
   check_values(type->parameters, arguments);
   return type->make(*type, std::move(arguments));
 }
@@ -143,8 +146,9 @@ std::vector<Expression> lower(const Fractions& fractions, const Lowering& loweri
 
 Expression feature_distance(const Field& field) {
   const Construction* made = field.construction();
-  // A transformed feature is a feature.
-  while (made && made->constructor && made->constructor->group == "transform") {
+  // A feature that is moved, or whose parts are joined otherwise, is a feature.
+  while (made && made->constructor &&
+         (made->constructor->group == "transform" || made->constructor->name == "with_blend")) {
     made = std::get<Field>(made->arguments[0]).construction();
   }
   if (!made || !made->constructor) return max(constant(0), field.expression());

@@ -45,8 +45,9 @@ using Shares = std::vector<std::pair<std::string, double>>;
 using MaterialFunctions = std::vector<std::pair<std::string, Field>>;
 
 struct Record;
-using RuleValue = std::variant<std::monostate, double, Field, Shares, MaterialFunctions,
-                               std::vector<Field>, Fractions, std::vector<Record>>;
+using RuleValue =
+    std::variant<std::monostate, double, std::string, Field, Shares, MaterialFunctions,
+                 std::vector<Field>, Fractions, std::vector<Record>>;
 /// One element of a list of records; values in the order of the record's parameters.
 struct Record {
   std::vector<RuleValue> values;
@@ -54,6 +55,7 @@ struct Record {
 
 enum class RuleParameterType {
   number,
+  text,
   field,
   feature,    // a field whose distance counts: see feature_distance
   influence,  // a field; its formula may use u, the distance to the record's feature
@@ -110,7 +112,8 @@ struct Rule {
 const std::vector<RuleType>& fraction_rules();
 const RuleType* find_fraction_rule(const std::string& name);
 
-/// Checks the arguments and makes the rule. Throws Error.
+/// Checks the arguments and makes the rule; those left out at the end have their defaults. Throws
+/// Error.
 Fractions make_fractions(const std::string& rule, std::vector<RuleValue> arguments);
 
 /// The fraction of each material. Throws Error for a material that is not among them.

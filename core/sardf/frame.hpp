@@ -24,6 +24,12 @@ class Frame {
     v_ = cross(w_, u_);
   }
 
+  /// The unit vectors of u, v, w.
+  std::array<Vec3, 3> rows() const {
+    return upright_ ? std::array<Vec3, 3>{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}
+                    : std::array<Vec3, 3>{u_, v_, w_};
+  }
+
   template <class T>
   std::array<T, 3> local(T x, T y, T z) const {
     const T px = x - T(origin_[0]), py = y - T(origin_[1]), pz = z - T(origin_[2]);

@@ -341,6 +341,27 @@ void write_image(const std::string& path, const Image& image, Meaning meaning, D
   writer.finish();
 }
 
+void write_texture(const std::string& path, const Image& image, Meaning meaning,
+                   const std::vector<std::string>& channel_names) {
+  if (fs::path(path).extension() != ".tx") throw Error("a texture ends in .tx", path);
+  const OIIO::ImageSpec spec = file_spec(
+      {image.width, image.height, image.channels, meaning, Depth::float32, channel_names});
+  const OIIO::ImageBuf pixels(spec, const_cast<float*>(image.samples.data()));
+  OIIO::ImageSpec options;
+  options.attribute("maketx:filtername", "box");
+  options.attribute("maketx:fileformatname", "tiff");
+  const std::string temporary = temporary_name(path);
+  std::stringstream report;
+  std::error_code failed;
+  if (!OIIO::ImageBufAlgo::make_texture(OIIO::ImageBufAlgo::MakeTxTexture, pixels, temporary,
+                                        options, &report)) {
+    fs::remove(temporary, failed);
+    throw Failure("cannot be written: " + OIIO::geterror(), path);
+  }
+  fs::rename(temporary, path, failed);
+  if (failed) throw Failure("cannot be written: " + failed.message(), path);
+}
+
 std::string encode_png(const Image& image, Meaning meaning) {
   const ImageLayout layout{image.width, image.height, image.channels, meaning, Depth::byte8};
   check_layout("PNG", layout);

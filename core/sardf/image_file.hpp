@@ -43,6 +43,12 @@ Image read_image(const std::string& path, Meaning meaning,
 void write_image(const std::string& path, const Image& image, Meaning meaning, Depth depth,
                  const std::vector<std::string>& channel_names = {});
 
+/// Writes a tiled, mip-mapped texture (.tx, a TIFF of 32-bit floats, linear), as renderers with
+/// OpenImageIO read in parts; to a temporary name that is then renamed. Throws Error for another
+/// extension and Failure where it cannot be written.
+void write_texture(const std::string& path, const Image& image, Meaning meaning,
+                   const std::vector<std::string>& channel_names = {});
+
 /// The image as the bytes of an 8-bit PNG file of 1 to 4 channels.
 std::string encode_png(const Image& image, Meaning meaning);
 

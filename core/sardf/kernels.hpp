@@ -26,6 +26,8 @@ template <class Op, class Isa>
 struct KernelsOf {
   static constexpr int arity = Op::arity;
   using L = Lanes<Isa>;
+  // A copy stays in registers, since results cannot be written to it.
+  using Own = std::conditional_t<std::is_trivially_copyable_v<Op>, Op, const Op&>;
 
   template <class T, size_t... I>
   static T call(const Op& op, const T* in, std::index_sequence<I...>) {
@@ -33,7 +35,7 @@ struct KernelsOf {
   }
 
   static void value(const void* object, const float* const* in, float* out, size_t n) {
-    const Op& op = *static_cast<const Op*>(object);
+    const Own op = *static_cast<const Op*>(object);
     for (size_t i = 0; i < n; i += L::width) {
       std::array<L, arity> at;
       for (int k = 0; k < arity; ++k) at[k] = L::load(in[k] + i);
@@ -44,7 +46,7 @@ struct KernelsOf {
   static void partials(const void* object, const float* const* in, float* out,
                        float* const* partial, size_t n) {
     using Dual = Gradient<L, arity>;
-    const Op& op = *static_cast<const Op*>(object);
+    const Own op = *static_cast<const Op*>(object);
     for (size_t i = 0; i < n; i += L::width) {
       std::array<Dual, arity> at;
       for (int k = 0; k < arity; ++k) at[k] = Dual::variable(L::load(in[k] + i), k);

@@ -26,6 +26,9 @@ enum class Kind {
   internal,  // what constructors build with
 };
 
+/// Which boolean of a blend an operation is.
+enum class Join { none, intersection, unite, difference };
+
 struct OperationInfo {
   std::string name;
   Kind kind;
@@ -76,6 +79,7 @@ class Operation {
   virtual double gain(const Interval* in) const = 0;
   /// Whether it is the exact Euclidean distance in its inputs.
   virtual bool is_distance() const = 0;
+  virtual Join join() const = 0;
 
   /// Records the formula; the result's step is trace.result.
   virtual void record(Trace& trace) const = 0;

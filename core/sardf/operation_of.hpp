@@ -14,6 +14,9 @@
 //                                      sign of each partial derivative everywhere
 //   double gain(Interval, ...) const;  bound of the sum of |partials|
 //   double blend_error() const;        bound of |this - its min/max counterpart|
+//   static constexpr Join join;        which boolean of a blend it is
+//   static constexpr bool mean_value = true;       its slopes bound it better than its formula
+//   static constexpr bool hides_jumps = true;      it jumps, and its slope is that in between
 //   static constexpr double rounding = 16;
 //                                      rounding error, in ulps of the largest magnitude of
 //                                      parameters and result and, for a distance, of arguments
@@ -75,10 +78,20 @@ class OperationOf final : public Operation {
   double evaluate(const double* in) const override { return apply(op_, in); }
 
   void evaluate(const double* const* in, double* out, size_t n) const override {
-    for (size_t i = 0; i < n; ++i) {
+    using L = Lanes<TwoDoubles>;
+    const typename KernelsOf<Op, TwoDoubles>::Own op = op_;
+    std::array<const double*, arity> from;
+    std::copy_n(in, arity, from.begin());
+    size_t i = 0;
+    for (; i + L::width <= n; i += L::width) {
+      std::array<L, arity> at;
+      for (int k = 0; k < arity; ++k) at[k] = L::load(from[k] + i);
+      apply(op, at.data()).store(out + i);
+    }
+    for (; i < n; ++i) {
       std::array<double, arity> at;
-      for (int k = 0; k < arity; ++k) at[k] = in[k][i];
-      out[i] = apply(op_, at.data());
+      for (int k = 0; k < arity; ++k) at[k] = from[k][i];
+      out[i] = apply(op, at.data());
     }
   }
 
@@ -97,6 +110,7 @@ class OperationOf final : public Operation {
     if constexpr (is_monotone<Op>) return at_end_points(in);
     const Interval natural = apply(op_, in);
     if constexpr (is_exact_distance<Op>) return intersect(natural, around_centre(in));
+    if constexpr (requires { Op::mean_value; }) return intersect(natural, by_mean_value(in));
     return natural;
   }
 
@@ -136,6 +150,10 @@ class OperationOf final : public Operation {
     return 0;
   }
   bool is_distance() const override { return is_exact_distance<Op>; }
+  Join join() const override {
+    if constexpr (requires { Op::join; }) return Op::join;
+    return Join::none;
+  }
 
   void record(Trace& trace) const override {
     std::array<Text, arity> in;
@@ -175,6 +193,16 @@ class OperationOf final : public Operation {
               std::isnan(hi) || above == infinity ? infinity : rounded_up(hi + above)};
     }
     return Interval::all();
+  }
+
+  // f(centre) + Σ partial · (input - centre), which holds all values of a smooth function.
+  Interval by_mean_value(const Interval* in) const {
+    std::array<Interval, arity> centre;
+    for (int k = 0; k < arity; ++k) centre[k] = in[k].lo + 0.5 * (in[k].hi - in[k].lo);
+    const std::array<Interval, arity> by = local_partials(in);
+    Interval all = apply(op_, centre.data());
+    for (int k = 0; k < arity; ++k) all = all + by[k] * (in[k] - centre[k]);
+    return std::isfinite(all.lo) && std::isfinite(all.hi) ? all : Interval::all();
   }
 
   Interval around_centre(const Interval* in) const {

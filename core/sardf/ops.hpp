@@ -9,12 +9,13 @@
 #include "sardf/ops_features.hpp"
 #include "sardf/ops_functions.hpp"
 #include "sardf/ops_plane.hpp"
+#include "sardf/ops_quadric.hpp"
 #include "sardf/ops_sardf.hpp"
 #include "sardf/ops_solids.hpp"
 
 namespace sardf {
 
-using Ops = Joined<SolidOps, ConeOps, EllipsoidOps, PlaneOps, FeatureOps, BlendOps, DomainOps,
-                   ArithmeticOps, FunctionOps>::type;
+using Ops = Joined<SolidOps, ConeOps, EllipsoidOps, QuadricOps, PlaneOps, FeatureOps, BlendOps,
+                   DomainOps, ArithmeticOps, FunctionOps>::type;
 
 }  // namespace sardf

@@ -4,6 +4,7 @@
 // A blend's intersection never decreases in either argument. It may state
 //   blend_error()        bound of |intersection - min|, infinite by default
 //   gain(x, y)           bound of the sum of its partial derivatives over two intervals
+//   unite(x, y)          the union, where there is a shorter form with equal results
 #pragma once
 
 #include "sardf/op_list.hpp"
@@ -21,6 +22,7 @@ struct BlendOperation : Blend {
 template <class Blend>
 struct IntersectionOf : BlendOperation<Blend> {
   using BlendOperation<Blend>::BlendOperation;
+  static constexpr Join join = Join::intersection;
   static inline const std::string name = std::string(Blend::name) + "_intersection";
   static inline const std::string doc = "Intersection. " + std::string(Blend::doc);
   static constexpr std::array<int, 2> monotone{1, 1};
@@ -33,11 +35,13 @@ struct IntersectionOf : BlendOperation<Blend> {
 template <class Blend>
 struct UnionOf : BlendOperation<Blend> {
   using BlendOperation<Blend>::BlendOperation;
+  static constexpr Join join = Join::unite;
   static inline const std::string name = std::string(Blend::name) + "_union";
   static inline const std::string doc = "Union. " + std::string(Blend::doc);
   static constexpr std::array<int, 2> monotone{1, 1};
   template <class T>
   T eval(T x, T y) const {
+    if constexpr (requires { this->unite(x, y); }) return this->unite(x, y);
     return -this->intersection(-x, -y);
   }
   double gain(Interval x, Interval y) const
@@ -50,6 +54,7 @@ struct UnionOf : BlendOperation<Blend> {
 template <class Blend>
 struct DifferenceOf : BlendOperation<Blend> {
   using BlendOperation<Blend>::BlendOperation;
+  static constexpr Join join = Join::difference;
   static inline const std::string name = std::string(Blend::name) + "_difference";
   static inline const std::string doc = "Difference. " + std::string(Blend::doc);
   static constexpr std::array<int, 2> monotone{1, -1};
@@ -75,6 +80,10 @@ struct MinMax {
   template <class T>
   T intersection(T x, T y) const {
     return min(x, y);
+  }
+  template <class T>
+  T unite(T x, T y) const {
+    return max(x, y);
   }
 };
 

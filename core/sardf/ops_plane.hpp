@@ -41,6 +41,27 @@ struct Box2d : PlaneSolid {
   }
 };
 
+struct HalfPlane : PlaneSolid {
+  static constexpr const char *name = "half_plane",
+                              *doc = "All of the xy plane on one side of a line.";
+  Vec2 point{}, normal{1, 0};
+  template <class V>
+  static void parameters(V& v) {
+    v(length_of("point", "a point of the line"), &HalfPlane::point);
+    v(Parameter{"normal", "perpendicular to the line, pointing inwards; of any length but 0",
+                Unit::none, Range::any, true},
+      &HalfPlane::normal);
+  }
+  void prepare();
+  template <class T>
+  T eval(T x, T y) const {
+    return T(unit_[0]) * (x - T(point[0])) + T(unit_[1]) * (y - T(point[1]));
+  }
+
+ private:
+  Vec2 unit_{1, 0};
+};
+
 /// The nearest edge gives the magnitude; the sign is that of the nearest edge's line where the foot
 /// lies inside the edge, and the parity of crossings of a ray where it is a corner.
 struct Polygon : PlaneSolid {
@@ -97,6 +118,6 @@ struct Polygon : PlaneSolid {
   double turn_ = 1;  // 1: counter-clockwise
 };
 
-using PlaneOps = OpList<Disc, Box2d, Polygon>;
+using PlaneOps = OpList<Disc, Box2d, HalfPlane, Polygon>;
 
 }  // namespace sardf

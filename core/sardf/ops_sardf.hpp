@@ -18,11 +18,30 @@ inline bool can_reach_outer_corner(Interval x, Interval y, double radius) {
   return band && x.lo < 0 && y.lo < 0 && x.hi > -3 * radius && y.hi > -3 * radius;
 }
 
-/// Whether (lo, hi) is so near the edge that lo differs from the blend by less than rounding; there
-/// squares would vanish.
+/// Whether the blend of (lo, hi) is lo for every radius profile: where the signs differ, and so
+/// near the edge that lo differs from the blend by less than rounding; there squares would vanish.
 template <class T>
-auto is_edge(const T& lo, const T& hi, double radius) {
-  return lo > T(-1e-15 * radius) && hi < T(1e-15 * radius);
+auto is_sharp(const T& lo, const T& hi, double radius) {
+  return (lo <= T(0.0) && hi >= T(0.0)) || (lo > T(-1e-15 * radius) && hi < T(1e-15 * radius));
+}
+
+/// Whether the arc through a point of the band has the radius R, the fixed arc's value given.
+template <class T>
+auto is_fixed(const T& lo, const T& fixed, const T& radius) {
+  return select(lo > T(0.0), fixed, T(-0.5) * fixed) >= radius;
+}
+
+/// Intersection and union that are min and max but where |x - y| < R. There the intersection is
+/// arc(lo, hi, hi - lo).
+template <class T, class Arc>
+T rounded_min(const T& x, const T& y, const T& R, Arc arc) {
+  const T lo = smaller(x, y), hi = larger(x, y), t = hi - lo;
+  return shortcut(t >= R, lo, [&] { return arc(lo, hi, t); });
+}
+template <class T, class Arc>
+T rounded_max(const T& x, const T& y, const T& R, Arc arc) {
+  const T lo = smaller(x, y), hi = larger(x, y), t = hi - lo;
+  return shortcut(t >= R, hi, [&] { return -arc(-hi, -lo, t); });
 }
 
 /// sardf: r(d) = min(d, R) inside, min(-d/2, R) outside (2.2). Not C1 across d = R and d = -2R.
@@ -44,14 +63,21 @@ struct Sardf {
 
   template <class T>
   T intersection(T x, T y) const {
-    const T lo = smaller(x, y), hi = larger(x, y), t = hi - lo, R(radius);
-    return shortcut(t >= R || (lo <= T(0.0) && hi >= T(0.0)), lo, [&] {
-      const T arc = max(growing_arc(lo, hi, t), fixed_arc(lo, t));
-      return select(is_edge(lo, hi, radius), lo, arc);
-    });
+    return rounded_min(x, y, T(radius), [this](T lo, T hi, T t) { return arc(lo, hi, t); });
+  }
+  template <class T>
+  T unite(T x, T y) const {
+    return rounded_max(x, y, T(radius), [this](T lo, T hi, T t) { return arc(lo, hi, t); });
   }
 
  private:
+  template <class T>
+  T arc(T lo, T hi, T t) const {
+    const T fixed = fixed_arc(lo, t);
+    const T rounded = shortcut(is_fixed(lo, fixed, T(radius)), fixed,
+                               [&] { return max(growing_arc(lo, hi, t), fixed); });
+    return select(is_sharp(lo, hi, radius), lo, rounded);
+  }
   // Arc of radius d through (x, y) where lo > 0, of radius -d/2 where hi < 0; lo off the cone.
   template <class T>
   T growing_arc(T lo, T hi, T t) const {
@@ -87,19 +113,25 @@ struct SardfC1 {
 
   template <class T>
   T intersection(T x, T y) const {
-    const T lo = smaller(x, y), hi = larger(x, y), t = hi - lo, R(radius);
-    return shortcut(t >= R || (lo <= T(0.0) && hi >= T(0.0)), lo, [&] {
-      const T fixed =
-          lo + (T(0.5) * (t + sqrt(max(T(2 * radius * radius) - square(t), T(0.0)))) - R);
-      const auto inside = lo > T(0.0);
-      const T growing = select(inside, shortcut(!inside, lo, [&] { return inner(lo, hi); }),
-                               shortcut(inside, lo, [&] { return outer(lo, hi, t); }));
-      const auto is_fixed = select(inside, fixed, -T(0.5) * fixed) >= R;
-      return select(is_fixed, fixed, select(is_edge(lo, hi, radius), lo, growing));
-    });
+    return rounded_min(x, y, T(radius), [this](T lo, T hi, T t) { return arc(lo, hi, t); });
+  }
+  template <class T>
+  T unite(T x, T y) const {
+    return rounded_max(x, y, T(radius), [this](T lo, T hi, T t) { return arc(lo, hi, t); });
   }
 
  private:
+  template <class T>
+  T arc(T lo, T hi, T t) const {
+    const T fixed =
+        lo + (T(0.5) * (t + sqrt(max(T(2 * radius * radius) - square(t), T(0.0)))) - T(radius));
+    const T rounded = shortcut(is_fixed(lo, fixed, T(radius)), fixed, [&] {
+      const auto inside = lo > T(0.0);
+      return select(inside, shortcut(!inside, lo, [&] { return inner(lo, hi); }),
+                    shortcut(inside, lo, [&] { return outer(lo, hi, t); }));
+    });
+    return select(is_sharp(lo, hi, radius), lo, rounded);
+  }
   // d = R s², s⁴ - 4s³ - 4s² + 4s(X + Y) - (X² + Y²) = 0, between the parabolas 4 R lo = hi².
   template <class T>
   T inner(T lo, T hi) const {
@@ -108,7 +140,7 @@ struct SardfC1 {
     const T sum = X + Y, squares = square(X) + square(Y);
     const T a = freeze(sum), b = freeze(squares);
     T s = min(T(1.0), T(0.5) * (a + sqrt(max(square(a) - b, T(0.0)))));
-    for (int step = 0; step < 5; ++step) {
+    for (int step = 0; step < 6; ++step) {
       const T value = quartic(s, a, b), slope = quartic_slope(s, a);
       const T bend = T(12.0) * square(s) - T(24.0) * s - T(8.0);
       s = s - T(2.0) * value * slope / (T(2.0) * square(slope) - value * bend);
@@ -134,7 +166,7 @@ struct SardfC1 {
     const T a = freeze(sum), b = freeze(squares), n = freeze(-Y), w = freeze(t * T(1 / radius));
     // The start is the arc of `sardf` through the point: radius half the distance.
     T e = T(0.5) * (T(4.0) * n + T(2.0) * w - sqrt(max(T(8.0) * n * (n + w), T(0.0))));
-    for (int step = 0; step < 4; ++step) e = e - outer_quartic(e, a, b) / outer_slope(e, a);
+    for (int step = 0; step < 6; ++step) e = e - outer_quartic(e, a, b) / outer_slope(e, a);
     e = e - outer_quartic(e, sum, squares) / outer_slope(e, a);
     return select(on_arc, T(-2 * radius) * e, lo);
   }

@@ -6,7 +6,9 @@
 
 #include "sardf/arithmetic.hpp"
 #include "sardf/bounds.hpp"
+#include "sardf/constructor.hpp"
 #include "sardf/error.hpp"
+#include "sardf/shapes_combine.hpp"
 
 namespace sardf {
 
@@ -85,6 +87,14 @@ void check_parts(SceneDescription& scene) {
   }
 }
 
+Field joined(const SceneDescription& scene, const Field& field) {
+  return scene.blend ? make_field(WithBlend::name, {field, scene.blend}) : field;
+}
+
+std::vector<Expression> joined(const SceneDescription& scene, const std::vector<Expression>& all) {
+  return scene.blend ? joined_by(*scene.blend, all) : all;
+}
+
 // The part of space that one section takes away.
 Expression taken(const Section& section) {
   Expression removed = section.remove.expression();
@@ -93,8 +103,8 @@ Expression taken(const Section& section) {
 }
 
 // Formulas may sum to 0 somewhere in the solid; found by sampling, it is said before work starts.
-void check_sums(const SceneDescription& scene, const std::vector<Expression>& fractions,
-                const BoundingBox& box) {
+void check_sums(const SceneDescription& scene, const Expression& solid,
+                const std::vector<Expression>& fractions, const BoundingBox& box) {
   if (!uses_rule(scene.fractions, "formulas")) return;
   Expression sum = constant(0);
   for (const Expression& fraction : fractions) sum = sum + fraction;
@@ -107,7 +117,7 @@ void check_sums(const SceneDescription& scene, const std::vector<Expression>& fr
       points[3 * i + axis] = box.lo[axis] + share * (box.hi[axis] - box.lo[axis]);
     }
   }
-  const std::vector<Expression> outputs{scene.solid.expression(), sum};
+  const std::vector<Expression> outputs{solid, sum};
   Evaluator(outputs).values(points.data(), n, values.data());
   for (size_t i = 0; i < n; ++i) {
     if (values[2 * i] >= 0 && !(values[2 * i + 1] > 0.5)) {
@@ -136,29 +146,38 @@ Scene::Scene(SceneDescription description, const Progress& progress)
     : description_(std::move(description)) {
   SceneDescription& scene = description_;
   check_parts(scene);
+  solid_field_ = joined(scene, scene.solid);
+  for (const NamedField& named : scene.fields) {
+    fields_.push_back({named.name, joined(scene, named.field)});
+  }
   bounds_ = located(scene, "/solid", [&] {
     return certified_bounds(Evaluator(solid()), progress, scene.stated_bounds);
   });
   drawn_ = solid();
   for (const Section& section : scene.sections) {
-    const Expression removed = taken(section);
+    const Expression removed = joined(scene, {taken(section)})[0];
     drawn_ = min(drawn_, -removed);
     removed_ = removed_ ? max(removed_, removed) : removed;
   }
   const std::vector<std::string> names = material_names();
   const double diagonal = bounds_.diagonal();
   fractions_ = located(scene, "/fractions", [&] {
-    return lower(scene.fractions ? scene.fractions : Fractions::material(names[0]), names,
-                 diagonal);
+    return joined(scene, lower(scene.fractions ? scene.fractions : Fractions::material(names[0]),
+                               names, diagonal));
   });
-  check_sums(scene, fractions_, bounds_);
+  check_sums(scene, solid(), fractions_, bounds_);
   for (Attribute& attribute : scene.attributes) {
-    if (!attribute.rule) continue;
+    if (!attribute.rule) {
+      attribute.rule = Fractions::value(attribute.components);
+      attribute.rule_components = attribute.components.size();
+    }
     const auto lowered = located(scene, "/attributes/" + attribute.name, [&] {
       return lower(attribute.rule, {names, diagonal, attribute.rule_components, fractions_});
     });
     attribute.components.clear();
-    for (const Expression& e : lowered) attribute.components.push_back(Field(e, {}, nullptr));
+    for (const Expression& e : joined(scene, lowered)) {
+      attribute.components.push_back(Field(e, {}, nullptr));
+    }
   }
   std::vector<Expression> outputs = fractions_;
   outputs.push_back(solid());

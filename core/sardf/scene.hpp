@@ -71,6 +71,8 @@ struct SceneDescription {
   std::vector<std::pair<std::string, double>> parameters;
   std::vector<NamedField> fields;  // in file order
   Field solid;
+  /// Joins every boolean of the scene in place of its own blend; null: as each says.
+  BlendPointer blend;
   std::vector<Material> materials;
   Fractions fractions;  // empty: the first material everywhere
   std::vector<Attribute> attributes;
@@ -99,7 +101,10 @@ class Scene {
   /// Certified: outside them the solid is proven empty. Padded by 1e-4 of the diagonal.
   const BoundingBox& bounds() const { return bounds_; }
 
-  const Expression& solid() const { return description_.solid.expression(); }
+  const Expression& solid() const { return solid_field_.expression(); }
+  const Field& solid_field() const { return solid_field_; }
+  /// The named fields, in file order.
+  const std::vector<NamedField>& fields() const { return fields_; }
   /// The solid with its sections cut away: what is drawn.
   const Expression& drawn() const { return drawn_; }
   /// What the sections remove, joined: >= 0 where material was cut away. Null: none.
@@ -120,6 +125,8 @@ class Scene {
 
  private:
   SceneDescription description_;
+  Field solid_field_;
+  std::vector<NamedField> fields_;
   BoundingBox bounds_;
   Expression drawn_, removed_;
   std::vector<Expression> fractions_;

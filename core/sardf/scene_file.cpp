@@ -58,6 +58,7 @@ class SceneReader : private RuleReader {
     } else {
       error(top, "the key 'solid' is missing: the field that is the object");
     }
+    if (const auto at = find(top, "blend")) scene_.blend = blend(*at).value_or(nullptr);
     if (const auto at = find(top, "materials")) read_materials(*at);
     if (const auto at = find(top, "fractions")) scene_.fractions = fractions(*at);
     if (const auto at = find(top, "attributes")) read_attributes(*at);
@@ -312,8 +313,9 @@ SceneDescription read_scene(const std::string& path) {
 }
 
 std::vector<std::string> scene_keys() {
-  return {"sardf",     "title",     "comment",    "units",    "parameters", "fields",    "solid",
-          "materials", "fractions", "attributes", "sections", "bounds",     "lipschitz", "view"};
+  return {"sardf",      "title",    "comment", "units",     "parameters",
+          "fields",     "solid",    "blend",   "materials", "fractions",
+          "attributes", "sections", "bounds",  "lipschitz", "view"};
 }
 
 std::vector<std::string> material_keys() {

@@ -47,6 +47,12 @@ void collect_names(const JsonValue& value, std::vector<std::string>& names) {
     if (info.type == ParameterType::fields) {
       for (const JsonValue& element : argument->elements) collect_names(element, names);
     }
+    if (info.type == ParameterType::sections) {
+      for (const JsonValue& element : argument->elements) {
+        const JsonValue* field = element.find("field");
+        if (field) collect_names(*field, names);
+      }
+    }
   }
 }
 

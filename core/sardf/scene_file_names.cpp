@@ -24,6 +24,9 @@ void append_fields(const Value& value, std::vector<Field>& to) {
   if (const auto* fields = std::get_if<std::vector<Field>>(&value)) {
     to.insert(to.end(), fields->begin(), fields->end());
   }
+  if (const auto* sections = std::get_if<std::vector<PlaneSection>>(&value)) {
+    for (const PlaneSection& section : *sections) to.push_back(section.field);
+  }
 }
 
 void append_fields(const Fractions& fractions, std::vector<Field>& to);

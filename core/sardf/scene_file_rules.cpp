@@ -163,6 +163,10 @@ RuleValue RuleReader::rule_value(const JsonPlace& place, const RuleParameter& pa
       const auto read = number(place, parameter.name, parameter.range);
       return read ? RuleValue(*read) : RuleValue();
     }
+    case RuleParameterType::text: {
+      const auto read = text(place);
+      return read ? RuleValue(*read) : RuleValue();
+    }
     case RuleParameterType::field:
     case RuleParameterType::feature:
       return as_value(field(place));

@@ -219,6 +219,37 @@ std::optional<std::vector<Field>> ValueReader::fields(const JsonPlace& place) {
   return good ? std::optional(std::move(out)) : std::nullopt;
 }
 
+std::optional<PlaneSection> ValueReader::section(const JsonPlace& place) {
+  const size_t before = errors.size();
+  if (!object(place, "an object such as {\"field\": \"contour\", \"z\": 2}")) return std::nullopt;
+  check_keys(place, {"field", "z"});
+  PlaneSection read;
+  if (const auto at = place.find("field")) {
+    read.field = field(*at);
+  } else {
+    error(place, "a section needs 'field': a field of x and y");
+  }
+  if (const auto at = place.find("z")) {
+    read.z = number(*at, "z").value_or(0);
+  } else {
+    error(place, "a section needs 'z': its height");
+  }
+  return errors.size() == before && read.field ? std::optional(read) : std::nullopt;
+}
+
+std::optional<std::vector<PlaneSection>> ValueReader::sections(const JsonPlace& place,
+                                                               const ParameterInfo& info) {
+  if (!list(place, type_name(info.type))) return std::nullopt;
+  std::vector<PlaneSection> out;
+  bool good = true;
+  for (size_t i = 0; i < place.value->elements.size(); ++i) {
+    const auto read = section(place.element(i));
+    good = good && read;
+    out.push_back(read.value_or(PlaneSection{}));
+  }
+  return good ? std::optional(std::move(out)) : std::nullopt;
+}
+
 std::optional<Value> ValueReader::argument(const JsonPlace& place, const ParameterInfo& info) {
   const JsonValue& value = *place.value;
   std::optional<Value> read;
@@ -265,6 +296,9 @@ std::optional<Value> ValueReader::argument(const JsonPlace& place, const Paramet
     }
     case ParameterType::fields:
       read = as_value(fields(place));
+      break;
+    case ParameterType::sections:
+      read = as_value(sections(place, info));
       break;
     case ParameterType::blend:
       read = as_value(blend(place));

@@ -89,6 +89,9 @@ class ValueReader {
     return read ? std::optional<Value>(*read) : std::nullopt;
   }
   std::optional<std::vector<Field>> fields(const JsonPlace& place);
+  std::optional<PlaneSection> section(const JsonPlace& place);
+  std::optional<std::vector<PlaneSection>> sections(const JsonPlace& place,
+                                                    const ParameterInfo& info);
 
   std::string file_;
 };

@@ -51,7 +51,8 @@ bool is_default(const ParameterInfo& info, const Value& value) {
   return std::visit(
       [&](const auto& a) {
         using T = std::decay_t<decltype(a)>;
-        if constexpr (std::is_same_v<T, Field> || std::is_same_v<T, std::vector<Field>>) {
+        if constexpr (std::is_same_v<T, Field> || std::is_same_v<T, std::vector<Field>> ||
+                      std::is_same_v<T, std::vector<PlaneSection>>) {
           return false;
         } else if constexpr (std::is_same_v<T, BlendPointer>) {
           return a->name == std::get<T>(info.default_value)->name && a->parameters.empty();
@@ -75,6 +76,7 @@ class SceneWriter {
     add_if_any(top, "parameters", parameters());
     add_if_any(top, "fields", fields());
     if (scene_.solid) top.add("solid", field(scene_.solid));
+    if (scene_.blend) top.add("blend", blend_json(*scene_.blend));
     add_if_any(top, "materials", materials());
     if (scene_.fractions) top.add("fractions", fractions(scene_.fractions));
     add_if_any(top, "attributes", attributes());
@@ -160,6 +162,10 @@ class SceneWriter {
             return blend_json(*a);
           } else if constexpr (std::is_same_v<T, std::vector<Field>>) {
             return field_list(a);
+          } else if constexpr (std::is_same_v<T, std::vector<PlaneSection>>) {
+            JsonValue list = JsonValue::list();
+            for (const PlaneSection& section : a) list.add(plane_section(section));
+            return list;
           } else if constexpr (std::is_same_v<T, std::vector<Vec2>> ||
                                std::is_same_v<T, std::vector<Vec3>>) {
             JsonValue list = JsonValue::list();
@@ -174,6 +180,13 @@ class SceneWriter {
           }
         },
         value);
+  }
+
+  JsonValue plane_section(const PlaneSection& section) const {
+    JsonValue object = JsonValue::object();
+    object.add("field", field(section.field));
+    object.add("z", JsonValue::of(section.z));
+    return object;
   }
 
   JsonValue field_list(const std::vector<Field>& all) const {
@@ -234,14 +247,20 @@ class SceneWriter {
     return object;
   }
 
+  template <class T>
+  static bool is_usual(const RuleParameter& info, const RuleValue& value) {
+    const auto *given = std::get_if<T>(&value), *usual = std::get_if<T>(&info.default_value);
+    return given && usual && *given == *usual;
+  }
+
   JsonValue rule_values(const std::vector<RuleParameter>& infos,
                         const std::vector<RuleValue>& values) const {
     JsonValue object = JsonValue::object();
     for (size_t i = 0; i < infos.size() && i < values.size(); ++i) {
       if (values[i].index() == 0) continue;
-      const auto* number = std::get_if<double>(&values[i]);
-      const auto* usual = std::get_if<double>(&infos[i].default_value);
-      if (number && usual && *number == *usual) continue;
+      if (is_usual<double>(infos[i], values[i]) || is_usual<std::string>(infos[i], values[i])) {
+        continue;
+      }
       if (const auto* part = std::get_if<Fractions>(&values[i])) {
         object.add(key_of(*part), fractions(*part));
       } else if (infos[i].type == RuleParameterType::records) {
@@ -265,6 +284,7 @@ class SceneWriter {
 
   JsonValue rule_value(const RuleValue& value) const {
     if (const auto* number = std::get_if<double>(&value)) return JsonValue::of(*number);
+    if (const auto* word = std::get_if<std::string>(&value)) return JsonValue::of(*word);
     if (const auto* one = std::get_if<Field>(&value)) return field(*one);
     JsonValue object = JsonValue::object();
     if (const auto* shares = std::get_if<Shares>(&value)) {

@@ -115,6 +115,10 @@ JsonValue of_type(ParameterType type, Range range, int at_least) {
       return reference("field");
     case ParameterType::fields:
       return list_of(reference("field"), at_least);
+    case ParameterType::sections:
+      return list_of(closed(object({{"field", reference("field")}, {"z", number(Range::any)}}),
+                            {"field", "z"}),
+                     at_least);
     case ParameterType::blend:
       return reference("blend");
   }
@@ -194,6 +198,8 @@ JsonValue rule_parameter_schema(const RuleParameter& info, bool of_values) {
   switch (info.type) {
     case RuleParameterType::number:
       return number(info.range);
+    case RuleParameterType::text:
+      return object({{"type", text("string")}});
     case RuleParameterType::field:
     case RuleParameterType::feature:
       return reference("field");
@@ -225,6 +231,8 @@ JsonValue rule_parameters_schema(const std::vector<RuleParameter>& infos, bool o
       parameter.add("description", text(description(info.doc, info.unit)));
       const auto* usual = std::get_if<double>(&info.default_value);
       if (!info.required && usual) parameter.add("default", JsonValue::of(*usual));
+      const auto* word = std::get_if<std::string>(&info.default_value);
+      if (!info.required && word) parameter.add("default", text(*word));
       properties.add(key, parameter);
       if (keys.size() > 1) choices.add(object({{"required", list({text(key)})}}));
     }
@@ -314,6 +322,7 @@ std::string scene_schema() {
       {"parameters", map_of(number(Range::any), name)},
       {"fields", map_of(reference("field_or_number"), name)},
       {"solid", reference("field")},
+      {"blend", reference("blend")},
       {"materials", materials},
       {"fractions", reference("fractions")},
       {"attributes", map_of(attribute_schema(), name)},

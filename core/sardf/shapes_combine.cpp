@@ -85,6 +85,49 @@ Quality Shell::quality() const {
   return exact ? Quality{Exactness::bound, Exactness::exact} : Quality{};
 }
 
+Expression WithBlend::expression() const { return joined_by(*blend, field.expression()); }
+
+namespace {
+
+// The field made once more with another blend; empty where it is not made by constructors alone, or
+// too deep to be worth it.
+Field remade(const Field& field, const BlendPointer& blend, int depth) {
+  const Construction* made = field.construction();
+  if (depth == 0 || !made || !made->constructor) return {};
+  std::vector<Value> arguments = made->arguments;
+  for (Value& value : arguments) {
+    if (std::holds_alternative<BlendPointer>(value)) value = blend;
+    if (auto* one = std::get_if<Field>(&value)) {
+      *one = remade(*one, blend, depth - 1);
+      if (!*one) return {};
+    }
+    if (auto* all = std::get_if<std::vector<Field>>(&value)) {
+      for (Field& each : *all) {
+        each = remade(each, blend, depth - 1);
+        if (!each) return {};
+      }
+    }
+    if (std::holds_alternative<std::vector<PlaneSection>>(value)) return {};
+  }
+  return made->constructor->make(*made->constructor, std::move(arguments));
+}
+
+}  // namespace
+
+// A tree of other blends is another field; only with minima and maxima is anything known of it.
+Quality WithBlend::quality() const {
+  const Expression joined = expression();
+  if (joined == field.expression()) return field.quality();
+  if (!blend->is_min_max) return {};
+  constexpr int deepest = 30;
+  const Field again = remade(field, blend, deepest);
+  return again && again.expression() == joined ? again.quality() : Quality{};
+}
+
+Expression BlendError::expression() const {
+  return field.expression() - without_blends(field.expression());
+}
+
 Expression Boundary::expression() const { return abs(solid.expression()); }
 
 Quality Boundary::quality() const {

@@ -113,6 +113,38 @@ struct Boundary {
   Quality quality() const;
 };
 
-using CombineShapes = OpList<Union, Intersection, Difference, Complement, Offset, Shell, Boundary>;
+struct WithBlend {
+  static constexpr const char *name = "with_blend", *group = "boolean",
+                              *doc =
+                                  "A field whose unions, intersections and differences, however "
+                                  "deep, are all joined by another blend.";
+  Field field;
+  BlendPointer blend = min_max_blend();
+  template <class V>
+  static void parameters(V& v) {
+    v(field_parameter("the field"), &WithBlend::field);
+    v(Parameter{"blend", "how they are joined"}, &WithBlend::blend);
+  }
+  Expression expression() const;
+  Quality quality() const;
+};
+
+/// Source: Fayolle, Pasko, Schmitt, Mirenkov 2004, section 3.2.
+struct BlendError {
+  static constexpr const char *name = "blend_error", *group = "value",
+                              *doc =
+                                  "How far blending moves a field: the field minus the same tree "
+                                  "with minima and maxima. It is no distance.";
+  Field field;
+  template <class V>
+  static void parameters(V& v) {
+    v(field_parameter("the field"), &BlendError::field);
+  }
+  Expression expression() const;
+  Quality quality() const { return {}; }
+};
+
+using CombineShapes = OpList<Union, Intersection, Difference, Complement, WithBlend, Offset, Shell,
+                             BlendError, Boundary>;
 
 }  // namespace sardf

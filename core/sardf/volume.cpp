@@ -1,6 +1,8 @@
 #include "sardf/volume.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 #include "sardf/work.hpp"
 
@@ -10,6 +12,9 @@ namespace {
 
 constexpr int block_cells = 6;  // 6³ = 216 points fit one evaluator block
 constexpr int most_halvings = 5;
+// Blocks that halving may look at, for each block of the first grid: thin stripes everywhere would
+// otherwise take minutes.
+constexpr size_t most_blocks = 96;
 // Of the total volume: what the halving of all cells together may change where it stops.
 constexpr double wanted_error = 3e-3;
 // Fractions that differ by less within a block are summed well enough.
@@ -49,7 +54,14 @@ struct Block {
 struct Sum {
   std::vector<double> materials;
   bool settled = false;  // smaller cells would not change it
+  double doubt = 0;      // what the halving that made it changed
+
+  double total() const { return std::accumulate(materials.begin(), materials.end(), 0.0); }
 };
+
+void add(const Sum& part, Sum& to) {
+  for (size_t m = 0; m < to.materials.size(); ++m) to.materials[m] += part.materials[m];
+}
 
 class Summing {
  public:
@@ -84,33 +96,6 @@ class Summing {
     return sum;
   }
 
-  /// Adds the block's materials to `total` and what the last halving changed to `error`; `rough` is
-  /// what of(block) gave.
-  void refine(const Block& block, const Sum& rough, double tolerance, int halvings, Sum& total,
-              double& error) const {
-    std::array<Sum, 8> parts;
-    std::vector<double> fine(rough.materials.size());
-    for (int i = 0; i < 8; ++i) {
-      parts[i] = of(block.octant(i));
-      for (size_t m = 0; m < fine.size(); ++m) fine[m] += parts[i].materials[m];
-    }
-    double change = 0;
-    for (size_t m = 0; m < fine.size(); ++m) change += std::abs(fine[m] - rough.materials[m]);
-    if (change <= tolerance || halvings == 1) {
-      for (size_t m = 0; m < fine.size(); ++m) total.materials[m] += fine[m];
-      error += change;
-      return;
-    }
-    for (int i = 0; i < 8; ++i) {
-      if (parts[i].settled) {
-        for (size_t m = 0; m < fine.size(); ++m) total.materials[m] += parts[i].materials[m];
-      } else {
-        // A surface runs through about four of the eight.
-        refine(block.octant(i), parts[i], tolerance / 4, halvings - 1, total, error);
-      }
-    }
-  }
-
  private:
   static bool is_smooth(const std::vector<double>& shares, size_t n) {
     for (auto of = shares.begin(); of != shares.end(); of += std::ptrdiff_t(n)) {
@@ -123,47 +108,99 @@ class Summing {
   Evaluator field_, fractions_;
 };
 
+/// A block whose cells are to be halved, with what it was found to hold.
+struct Pending {
+  Block block;
+  Sum rough;
+};
+
+struct Halved {
+  std::array<Sum, 8> parts;
+  Sum fine;
+  double change = 0;
+};
+
+Halved halved(const Summing& summing, const Pending& pending) {
+  Halved result;
+  result.fine.materials.assign(pending.rough.materials.size(), 0.0);
+  for (int i = 0; i < 8; ++i) {
+    result.parts[i] = summing.of(pending.block.octant(i));
+    add(result.parts[i], result.fine);
+  }
+  for (size_t m = 0; m < result.fine.materials.size(); ++m) {
+    result.change += std::abs(result.fine.materials[m] - pending.rough.materials[m]);
+  }
+  return result;
+}
+
+std::vector<Block> blocks_of(const BoundingBox& box, int resolution) {
+  const int across = (resolution + block_cells - 1) / block_cells;
+  std::vector<Block> blocks(size_t(across) * across * across);
+  for (size_t i = 0; i < blocks.size(); ++i) {
+    const size_t at[3] = {i % across, i / across % across, i / across / across};
+    Block& block = blocks[i];
+    block = {box.lo, (1.0 / (across * block_cells)) * box.size()};
+    for (int axis = 0; axis < 3; ++axis) block.lo[axis] += double(at[axis]) * block.side()[axis];
+  }
+  return blocks;
+}
+
 }  // namespace
 
+// Rounds, each of which halves the cells of all blocks that still change. Sums are added in order,
+// so that threads change nothing.
 MaterialVolumes measure_volumes(const Scene& scene, int resolution, const Progress& progress) {
-  const int across = (resolution + block_cells - 1) / block_cells;  // blocks along each side
-  const Vec3 cell = (1.0 / (across * block_cells)) * scene.bounds().size();
-  const size_t count = size_t(across) * across * across, materials = scene.fractions().size();
-  const auto block = [&](size_t i) {
-    const size_t at[3] = {i % across, i / across % across, i / across / across};
-    Block result{scene.bounds().lo, cell};
-    for (int axis = 0; axis < 3; ++axis) result.lo[axis] += double(at[axis]) * result.side()[axis];
-    return result;
-  };
   const Summing summing(scene);
-  std::vector<Sum> sums(count);
+  const std::vector<Block> blocks = blocks_of(scene.bounds(), resolution);
+  std::vector<Pending> pending(blocks.size());
   Work work(progress);
-  work.stage(0.3);
-  work.run(count, 1, [&](size_t i, size_t) { sums[i] = summing.of(block(i)); });
-  double volume = 0;
-  std::vector<size_t> unsettled;
-  for (size_t i = 0; i < count; ++i) {
-    for (const double v : sums[i].materials) volume += v;
-    if (!sums[i].settled) unsettled.push_back(i);
-  }
-  // Each block has a sum of its own and they are added in order: threads change nothing.
-  const double tolerance = wanted_error * volume / double(std::max<size_t>(unsettled.size(), 1));
-  std::vector<double> errors(count);
-  work.stage(1);
-  work.run(unsettled.size(), 1, [&](size_t k, size_t) {
-    const size_t i = unsettled[k];
-    Sum total{std::vector<double>(materials), true};
-    summing.refine(block(i), sums[i], tolerance, most_halvings, total, errors[i]);
-    sums[i] = std::move(total);
+  work.stage(0.2);
+  work.run(blocks.size(), 1, [&](size_t i, size_t) {
+    pending[i] = {blocks[i], summing.of(blocks[i])};
   });
-  MaterialVolumes volumes;
-  volumes.materials.assign(materials, 0.0);
-  for (size_t i = 0; i < count; ++i) {
-    for (size_t m = 0; m < materials; ++m) volumes.materials[m] += sums[i].materials[m];
-    volumes.error += errors[i];
+  Sum total{std::vector<double>(scene.fractions().size()), true};
+  double volume = 0, error = 0;
+  for (const Pending& each : pending) volume += each.rough.total();
+  std::erase_if(pending, [&](const Pending& each) {
+    if (each.rough.settled) add(each.rough, total);
+    return each.rough.settled;
+  });
+  size_t budget = most_blocks * blocks.size();
+  for (int round = 1; !pending.empty(); ++round) {
+    work.stage(1 - 0.8 * std::pow(0.5, round));
+    std::vector<Halved> fine(pending.size());
+    work.run(pending.size(), 1, [&](size_t i, size_t) { fine[i] = halved(summing, pending[i]); });
+    budget -= std::min(budget, 8 * pending.size());
+    const double tolerance = wanted_error * volume / double(pending.size());
+    std::vector<Pending> next;
+    for (size_t i = 0; i < pending.size(); ++i) {
+      if (fine[i].change <= tolerance) {
+        add(fine[i].fine, total);
+        error += fine[i].change;
+        continue;
+      }
+      for (int k = 0; k < 8; ++k) {
+        Sum& part = fine[i].parts[k];
+        if (part.settled) {
+          add(part, total);
+        } else {
+          part.doubt = fine[i].change / 8;
+          next.push_back({pending[i].block.octant(k), std::move(part)});
+        }
+      }
+    }
+    pending = std::move(next);
+    if (round == most_halvings || 8 * pending.size() > budget) {
+      for (const Pending& each : pending) {
+        add(each.rough, total);
+        error += each.rough.doubt;
+      }
+      break;
+    }
   }
-  for (double v : volumes.materials) volumes.total += v;
-  return volumes;
+  work.stage(1);
+  work.run(1, 1, [](size_t, size_t) {});
+  return {total.total(), total.materials, error};
 }
 
 }  // namespace sardf

@@ -2,24 +2,38 @@
 // line of column names, then numbers. They come from an implementation that shares no code with
 // this one.
 //
-// $SARDF_GOLDEN names another folder of such files (another seed, other parameters); tests take
-// everything they need from the files.
+// tests/golden has the papers' parameters. Its folders varied_1 and varied_2 are two more draws,
+// with other seeds and parameters; of files with more than 300 rows they keep every third.
+// $SARDF_GOLDEN names another folder to read in place of all three: tests take everything they need
+// from the files, and do not count on a number of rows.
 #pragma once
 
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace sardf::golden {
 
-inline std::string folder() {
-  const char* other = std::getenv("SARDF_GOLDEN");
-  return other ? other : std::string(SARDF_SOURCE_DIR) + "/tests/golden";
+inline std::vector<std::string> folders() {
+  if (const char* other = std::getenv("SARDF_GOLDEN")) return {other};
+  const std::string papers = std::string(SARDF_SOURCE_DIR) + "/tests/golden";
+  return {papers, papers + "/varied_1", papers + "/varied_2"};
+}
+
+/// A folder as part of a test's name.
+inline std::string test_name(const std::string& folder) {
+  std::string name = folder.substr(folder.find_last_of('/') + 1);
+  for (char& c : name) {
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  }
+  return name;
 }
 
 struct Table {
@@ -51,10 +65,10 @@ inline std::vector<std::string> split(const std::string& line) {
 }
 
 /// Reads a file of the folder; throws when it is missing or has no rows.
-inline Table read(const std::string& name) {
-  std::ifstream file(folder() + "/" + name + ".csv");
+inline Table read(const std::string& folder, const std::string& name) {
+  std::ifstream file(folder + "/" + name + ".csv");
   std::string line;
-  if (!std::getline(file, line)) throw std::runtime_error("cannot read " + folder() + "/" + name);
+  if (!std::getline(file, line)) throw std::runtime_error("cannot read " + folder + "/" + name);
   Table table;
   table.header = nlohmann::json::parse(line.substr(line.find('{')));
   std::getline(file, line);
@@ -68,5 +82,26 @@ inline Table read(const std::string& name) {
   if (table.rows.empty()) throw std::runtime_error("no rows in " + name);
   return table;
 }
+
+/// A test that runs for each of the folders, in INSTANTIATE_TEST_SUITE_P(Each, ..., each_folder(),
+/// folder_name).
+class InEachFolder : public testing::TestWithParam<std::string> {
+ protected:
+  static Table read(const std::string& name) { return golden::read(GetParam(), name); }
+};
+inline auto each_folder() { return testing::ValuesIn(folders()); }
+inline std::string folder_name(const testing::TestParamInfo<std::string>& folder) {
+  return test_name(folder.param);
+}
+
+/// A test that runs for each of the folders with each of some cases.
+template <class Case>
+class EachFolderWith : public testing::TestWithParam<std::tuple<std::string, Case>> {
+ protected:
+  static const Case& this_case() { return std::get<1>(EachFolderWith::GetParam()); }
+  static Table read(const std::string& name) {
+    return golden::read(std::get<0>(EachFolderWith::GetParam()), name);
+  }
+};
 
 }  // namespace sardf::golden

@@ -47,6 +47,7 @@ std::vector<ListedOperation> list_operations() {
     if constexpr (is_monotone<Op>) {
       listed.monotone.assign(std::begin(Op::monotone), std::end(Op::monotone));
     }
+    listed.hides_jumps = requires { Op::hides_jumps; };
     all.push_back(listed);
   });
   return all;
@@ -71,6 +72,13 @@ Value random_of(Random& r, const Parameter& p) {
   T value{};
   randomize(r, p, value);
   return value;
+}
+
+Field random_plane_field(Random& r) {
+  for (;;) {
+    const Constructor& constructor = constructors()[size_t(r.below(int(constructors().size())))];
+    if (constructor.group == "plane") return random_field(r, constructor, 0);
+  }
 }
 
 Value random_value(Random& r, const ParameterInfo& info, int depth) {
@@ -103,6 +111,14 @@ Value random_value(Random& r, const ParameterInfo& info, int depth) {
       std::vector<Field> fields;
       for (int n = 1 + r.below(3); n > 0; --n) fields.push_back(random_field(r, depth - 1));
       return fields;
+    }
+    case ParameterType::sections: {
+      std::vector<PlaneSection> sections;
+      double z = r.uniform(-3, 0);
+      for (int n = 2 + r.below(3); n > 0; --n) {
+        sections.push_back({random_plane_field(r), z += r.uniform(0.5, 2)});
+      }
+      return sections;
     }
     case ParameterType::blend:
       return random_blend(r);

@@ -116,6 +116,7 @@ struct ListedOperation {
   std::string name;
   OperationPointer (*random)(Random&);  // with random parameters
   std::vector<int> monotone;            // the sign of each partial derivative; empty: not monotone
+  bool hides_jumps = false;             // only what it is built into is continuous
 };
 const std::vector<ListedOperation>& listed_operations();
 

@@ -66,8 +66,10 @@ Fractions weights(const std::vector<double>& k, const std::vector<double>& lambd
   return make_fractions("inverse_distance", {features});
 }
 
-TEST(Fractions, WeighByInverseDistanceAsTheGoldenValues) {
-  const golden::Table table = golden::read("bst_weights");
+using GoldenFractions = golden::InEachFolder;
+
+TEST_P(GoldenFractions, WeighByInverseDistanceAsTheGoldenValues) {
+  const golden::Table table = read("bst_weights");
   const std::vector<double> k = table.parameter("k"), lambda = table.parameter("lambda");
   const std::vector<double> ones(3, 1.0);
   const std::vector<std::pair<std::string, Fractions>> cases{{"k1", weights(ones, ones)},
@@ -87,8 +89,8 @@ TEST(Fractions, WeighByInverseDistanceAsTheGoldenValues) {
   }
 }
 
-TEST(Fractions, HaveTheGoldenDerivatives) {
-  const golden::Table table = golden::read("bst_weights");
+TEST_P(GoldenFractions, HaveTheGoldenDerivatives) {
+  const golden::Table table = read("bst_weights");
   const Fractions rule = weights(table.parameter("k"), table.parameter("lambda"));
   const std::vector<Expression> lowered = lower(rule, three, 1.0);
   for (int i = 0; i < 3; ++i) {
@@ -105,8 +107,8 @@ TEST(Fractions, HaveTheGoldenDerivatives) {
   }
 }
 
-TEST(Fractions, AreThoseOfTheCutter) {
-  const golden::Table table = golden::read("fig_bst_01_cutter");
+TEST_P(GoldenFractions, AreThoseOfTheCutter) {
+  const golden::Table table = read("fig_bst_01_cutter");
   const auto flat = [&](const char* c, const char* h) {
     const Vec2 center = table.parameter(c), half = table.parameter(h);
     return make_field("box2d", {center, Vec2{2 * half[0], 2 * half[1]}});
@@ -124,6 +126,8 @@ TEST(Fractions, AreThoseOfTheCutter) {
     EXPECT_NEAR(w[1], row[table.column("diamond")], table.tolerance());
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Each, GoldenFractions, golden::each_folder(), golden::folder_name);
 
 // u1 = x, u2 = y. Influences and material functions as printed in Figs. 11 and 15 of Biswas,
 // Shapiro, Tsukanov 2004; values from an independent implementation.
@@ -161,61 +165,6 @@ TEST(Fractions, TakeInfluencesThatDependOnTheDistance) {
                                  feature(y, of("b"), 1, formula("2*exp(59*u)", {{"u", y}}))};
   const auto shares = lower(make_fractions("inverse_distance", {huge}), three, 1.0);
   EXPECT_NEAR(at(shares, {20, 20, 0})[0], 2 * std::exp(-20), 1e-16);
-}
-
-// The part of section 6.2 with four grooved pins on a plate.
-struct CadPart {
-  Field whole, first, second;
-  CadPart(const golden::Table& table, const BlendPointer& blend) {
-    const auto number = [&](const char* name) { return table.parameter(name).get<double>(); };
-    const auto vector = [&](const char* name) { return table.parameter(name).get<Vec3>(); };
-    const auto join = [&](const char* how, std::vector<Field> fields) {
-      return make_field(how, {std::move(fields), blend});
-    };
-    const auto egg = [](const Vec3& c, const Vec3& r) { return make_field("ellipsoid", {c, r}); };
-    const Vec3 plate_at{0, number("plate_y"), 0};
-    const double q = number("pin_spacing"), off = number("groove_offset");
-    whole = block({}, vector("G_half"));
-    std::vector<Field> pins{block(plate_at, vector("plate_half"))};
-    std::vector<Field> wide{block(plate_at, vector("plate2_half"))};
-    for (const auto& [sx, sz] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
-      const Vec3 c{sx * q, number("pin_y"), sz * q};
-      std::vector<Field> grooves;
-      for (const auto& [ax, az] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
-        grooves.push_back(egg(c + off * Vec3{double(ax), 0, double(az)}, vector("groove_radii")));
-      }
-      pins.push_back(
-          join("difference", {egg(c, vector("pin_radii")), join("union", std::move(grooves))}));
-      wide.push_back(egg(c, vector("pin_SP2_radii")));
-    }
-    second = join("intersection", {join("union", pins), whole});
-    first = join("difference", {whole, join("intersection", {join("union", wide), whole})});
-  }
-};
-
-TEST(Fractions, BlendBetweenTheSolidsOfTheCadPart) {
-  const golden::Table table = golden::read("fig_sardf_62_cad3d");
-  const std::vector<std::pair<std::string, BlendPointer>> blends{
-      {"sardf", make_blend("sardf", {table.parameter("R").get<double>()})},
-      {"rfun", make_blend("r_function", {})},
-      {"minmax", make_blend("min_max", {})}};
-  size_t compared = 0;
-  for (const auto& [tag, blend] : blends) {
-    const CadPart part(table, blend);
-    const Fractions rule = make_fractions(
-        "blend_between", {std::vector<Record>{{{part.first, of("a")}}, {{part.second, of("b")}}}});
-    const Evaluator evaluator(lower(rule, {"a", "b"}, 15.0));
-    for (const std::vector<double>& row : table.rows) {
-      const double expected = row[table.column("m1_" + tag)];
-      if (std::isnan(expected)) continue;  // outside
-      double m[2];
-      evaluator.values(Vec3{row[0], row[1], row[2]}, m);
-      EXPECT_NEAR(m[0], expected, table.tolerance()) << tag;
-      EXPECT_NEAR(m[1], row[table.column("m2_" + tag)], table.tolerance()) << tag;
-      ++compared;
-    }
-  }
-  EXPECT_GT(compared, 500u);
 }
 
 // One of each rule, with features that meet each other and with solids that share faces.

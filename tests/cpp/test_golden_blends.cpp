@@ -40,14 +40,14 @@ struct Operation {
   Join join;
 };
 
-class GoldenOperation : public testing::TestWithParam<Operation> {
+class GoldenOperation : public golden::EachFolderWith<Operation> {
  protected:
   const Evaluator& evaluator(double radius) {
     const auto [at, added] = evaluators_.try_emplace(radius);
-    if (added) at->second = blend_of_coordinates(GetParam().blend, radius, GetParam().join);
+    if (added) at->second = blend_of_coordinates(this_case().blend, radius, this_case().join);
     return at->second;
   }
-  Table table_ = golden::read(std::string("op_") + GetParam().file);
+  Table table_ = read(std::string("op_") + this_case().file);
 
  private:
   std::map<double, Evaluator> evaluators_;
@@ -65,7 +65,7 @@ TEST_P(GoldenOperation, ValuesAndPartials) {
     // The gradient of `sardf` jumps across two arcs: on them either side is right.
     const double from_arc =
         std::min(std::abs(std::abs(expected) - R), std::abs(std::abs(expected) - 2 * R));
-    const bool jumps = GetParam().blend == std::string("sardf") && from_arc < 1e-9 * R;
+    const bool jumps = this_case().blend == std::string("sardf") && from_arc < 1e-9 * R;
     if (std::isnan(row[4]) || std::isnan(row[5]) || jumps) continue;
     ++compared;
     EXPECT_NEAR(gradient[0], row[4], table_.tolerance()) << row[0] << ' ' << row[1] << ' ' << R;
@@ -86,23 +86,53 @@ TEST_P(GoldenOperation, ValuesInFloat) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, GoldenOperation,
-    testing::Values(Operation{"sardf_intersection", "sardf", Join::intersection},
-                    Operation{"sardf_union", "sardf", Join::unite},
-                    Operation{"sardf_subtraction", "sardf", Join::difference},
-                    Operation{"sardf_arc_sides", "sardf", Join::intersection},
-                    Operation{"sardf_c1_intersection", "sardf_c1", Join::intersection},
-                    Operation{"sardf_c1_union", "sardf_c1", Join::unite},
-                    Operation{"sardf_c1_subtraction", "sardf_c1", Join::difference},
-                    Operation{"min", "min_max", Join::intersection},
-                    Operation{"max", "min_max", Join::unite},
-                    Operation{"r_intersection", "r_function", Join::intersection},
-                    Operation{"r_union", "r_function", Join::unite},
-                    Operation{"r_subtraction", "r_function", Join::difference}),
-    [](const auto& parameter) { return std::string(parameter.param.file); });
+    testing::Combine(
+        golden::each_folder(),
+        testing::Values(Operation{"sardf_intersection", "sardf", Join::intersection},
+                        Operation{"sardf_union", "sardf", Join::unite},
+                        Operation{"sardf_subtraction", "sardf", Join::difference},
+                        Operation{"sardf_arc_sides", "sardf", Join::intersection},
+                        Operation{"sardf_c1_intersection", "sardf_c1", Join::intersection},
+                        Operation{"sardf_c1_union", "sardf_c1", Join::unite},
+                        Operation{"sardf_c1_subtraction", "sardf_c1", Join::difference},
+                        Operation{"min", "min_max", Join::intersection},
+                        Operation{"max", "min_max", Join::unite},
+                        Operation{"r_intersection", "r_function", Join::intersection},
+                        Operation{"r_union", "r_function", Join::unite},
+                        Operation{"r_subtraction", "r_function", Join::difference})),
+    [](const auto& of) {
+      return golden::test_name(std::get<0>(of.param)) + "_" + std::get<1>(of.param).file;
+    });
+
+// The roots of both quartics and their derivatives with 60 digits, R = 1: near the ends of the arcs
+// the roots are found last.
+TEST(SardfC1, HasPartialsNearTheEndsOfItsArcs) {
+  const double rows[][5] = {
+      {-0.0428712, -0.000495836, -0.0428712155779425244, 0.999981268644915877,
+       0.000857075410891899934},
+      {-0.000271831, -4.33621e-08, -0.000271831001139509921, 0.999999983362921729,
+       9.15670685513493294e-05},
+      {-0.8, -0.3, -0.81406622570172138, 0.909634878432787453, 0.192623687117146336},
+      {0.00801306, 1.60721e-05, 1.60707702558904761e-05, 0.00050404811836580164,
+       0.874301832340744767},
+      {0.0249, 0.000162, 0.000159470409792466307, 0.00670872495198903112, 0.472472640056539273},
+      {0.8, 0.5, 0.3810656727072953, 0.318413995058827615, 0.538206737655262724}};
+  const Evaluator evaluator = blend_of_coordinates("sardf_c1", 1, Join::intersection);
+  for (const auto& row : rows) {
+    const double point[3] = {row[0], row[1], 0};
+    double value, gradient[3];
+    evaluator.gradients(point, 1, &value, gradient);
+    EXPECT_NEAR(value, row[2], 1e-15) << row[0];
+    EXPECT_NEAR(gradient[0], row[3], 1e-12) << row[0];
+    EXPECT_NEAR(gradient[1], row[4], 1e-12) << row[0];
+  }
+}
 
 // Sums over the grid of the paper's Table 1.
-TEST(GoldenTable1, Checksums) {
-  const Table table = golden::read("sardf_table1_checksums");
+using GoldenTable1 = golden::InEachFolder;
+
+TEST_P(GoldenTable1, Checksums) {
+  const Table table = read("sardf_table1_checksums");
   const double R = table.parameter("R");
   const std::vector<Evaluator> operations{blend_of_coordinates("sardf", R, Join::intersection),
                                           blend_of_coordinates("min_max", R, Join::intersection),
@@ -133,6 +163,8 @@ TEST(GoldenTable1, Checksums) {
   }
 }
 
+INSTANTIATE_TEST_SUITE_P(Each, GoldenTable1, golden::each_folder(), golden::folder_name);
+
 // A tree of the file's header, over four values a, b, c, d: n-ary nodes fold from the left.
 Expression tree_of(const nlohmann::json& tree, const Blend& blend,
                    const std::map<std::string, Expression>& leaves) {
@@ -145,8 +177,10 @@ Expression tree_of(const nlohmann::json& tree, const Blend& blend,
   return result;
 }
 
-TEST(GoldenTrees, LeftFoldErrorAndBound) {
-  const Table table = golden::read("sardf_tree_error");
+using GoldenTrees = golden::InEachFolder;
+
+TEST_P(GoldenTrees, LeftFoldErrorAndBound) {
+  const Table table = read("sardf_tree_error");
   const double R = table.parameter("R");
   const nlohmann::json unite = {"union", "a", "b", "c", "d"};
   const nlohmann::json intersect = {"intersection", "a", "b", "c", "d"};
@@ -179,11 +213,13 @@ TEST(GoldenTrees, LeftFoldErrorAndBound) {
   EXPECT_GT(largest_error, 0);
 }
 
+INSTANTIATE_TEST_SUITE_P(Each, GoldenTrees, golden::each_folder(), golden::folder_name);
+
 // Two ellipsoids joined (paper, section 5, Figs. 14 and 15).
-class GoldenEllipsoids : public testing::TestWithParam<const char*> {};
+using GoldenEllipsoids = golden::EachFolderWith<const char*>;
 
 TEST_P(GoldenEllipsoids, ThreeUnions) {
-  const Table table = golden::read(GetParam());
+  const Table table = read(this_case());
   const auto vector = [&](const char* name) {
     const nlohmann::json& v = table.parameter(name);
     return Vec3{v[0], v[1], v[2]};
@@ -215,7 +251,13 @@ TEST_P(GoldenEllipsoids, ThreeUnions) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, GoldenEllipsoids,
-                         testing::Values("fig_sardf_14_15_3d", "fig_sardf_14_15_section"));
+                         testing::Combine(golden::each_folder(),
+                                          testing::Values("fig_sardf_14_15_3d",
+                                                          "fig_sardf_14_15_section")),
+                         [](const auto& of) {
+                           return golden::test_name(std::get<0>(of.param)) + "_" +
+                                  std::get<1>(of.param);
+                         });
 
 }  // namespace
 }  // namespace sardf

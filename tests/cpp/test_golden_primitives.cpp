@@ -99,12 +99,12 @@ struct Samples {
   size_t size() const { return expected.size(); }
 };
 
-class GoldenPrimitive : public testing::TestWithParam<Primitive> {
+class GoldenPrimitive : public golden::EachFolderWith<Primitive> {
  protected:
   GoldenPrimitive()
-      : table_(golden::read(std::string("prim_") + GetParam().file)),
+      : table_(read(std::string("prim_") + this_case().file)),
         samples_(table_),
-        field_(make_field(GetParam().constructor, arguments_of(GetParam(), table_))),
+        field_(make_field(this_case().constructor, arguments_of(this_case(), table_))),
         evaluator_(field_.expression()) {}
 
   Table table_;
@@ -147,7 +147,7 @@ TEST_P(GoldenPrimitive, ValuesInFloat) {
   for (size_t i = 0; i < out.size(); ++i) {
     double most = largest(table_.header["params"]);
     for (int axis = 0; axis < 3; ++axis) most = std::max(most, abs(samples_.points[3 * i + axis]));
-    EXPECT_NEAR(out[i], samples_.expected[i], GetParam().float_tolerance * most) << "row " << i;
+    EXPECT_NEAR(out[i], samples_.expected[i], this_case().float_tolerance * most) << "row " << i;
   }
 }
 
@@ -155,41 +155,49 @@ constexpr double degrees = 180 / std::numbers::pi;
 
 INSTANTIATE_TEST_SUITE_P(
     All, GoldenPrimitive,
-    testing::Values(
-        Primitive{"sphere", "sphere", {{"center", "c"}, {"radius", "r"}}},
-        Primitive{"halfspace", "half_space", {{"point", "p0"}, {"normal", "n"}}},
-        Primitive{
-            "cylinder_infinite", "cylinder", {{"center", "c"}, {"axis", "axis"}, {"radius", "r"}}},
-        Primitive{
-            "cylinder_capped",
-            "cylinder",
-            {{"center", "c"}, {"axis", "axis"}, {"radius", "r"}, {"height", "half_height", 2}}},
-        Primitive{"block", "box", {{"center", "c"}, {"size", "half", 2}}},
-        Primitive{"block2d", "box2d", {{"center", "c"}, {"size", "half", 2}}},
-        Primitive{"disc", "disc", {{"center", "c"}, {"radius", "r"}}},
-        Primitive{"torus",
-                  "torus",
-                  {{"center", "c"},
-                   {"axis", "axis"},
-                   {"major_radius", "R_major"},
-                   {"minor_radius", "r_minor"}}},
-        Primitive{"ellipsoid_triaxial", "ellipsoid", {{"center", "c"}, {"radii", "radii"}}, 1e-5},
-        Primitive{"ellipsoid_5_2_2", "ellipsoid", {{"center", "c"}, {"radii", "radii"}}, 1e-5},
-        Primitive{"ellipsoid_2_2_5", "ellipsoid", {{"center", "c"}, {"radii", "radii"}}, 1e-5},
-        Primitive{"ellipsoid_flat", "ellipsoid", {{"radii", "radii"}}, 1e-5},
-        Primitive{"ellipse2d", "ellipse", {{"center", "c"}, {"radii", "radii"}}, 1e-5},
-        Primitive{"segment2d", "segment", {{"a", "a"}, {"b", "b"}}},
-        Primitive{"segment3d", "segment", {{"a", "a"}, {"b", "b"}}},
-        Primitive{"polyline2d", "polyline", {{"vertices", "verts"}}},
-        Primitive{"polyline3d", "polyline", {{"vertices", "verts"}}},
-        Primitive{"polygon", "polygon", {{"vertices", "verts"}}},
-        Primitive{"polygon_tooth_outer", "polygon", {{"vertices", "verts"}}},
-        Primitive{"circle", "circle", {{"center", "c"}, {"radius", "r"}}},
-        Primitive{
-            "arc",
-            "arc",
-            {{"center", "c"}, {"radius", "r"}, {"start", "t0", degrees}, {"end", "t1", degrees}}}),
-    [](const auto& parameter) { return std::string(parameter.param.file); });
+    testing::Combine(
+        golden::each_folder(),
+        testing::Values(
+            Primitive{"sphere", "sphere", {{"center", "c"}, {"radius", "r"}}},
+            Primitive{"halfspace", "half_space", {{"point", "p0"}, {"normal", "n"}}},
+            Primitive{"cylinder_infinite",
+                      "cylinder",
+                      {{"center", "c"}, {"axis", "axis"}, {"radius", "r"}}},
+            Primitive{
+                "cylinder_capped",
+                "cylinder",
+                {{"center", "c"}, {"axis", "axis"}, {"radius", "r"}, {"height", "half_height", 2}}},
+            Primitive{"block", "box", {{"center", "c"}, {"size", "half", 2}}},
+            Primitive{"block2d", "box2d", {{"center", "c"}, {"size", "half", 2}}},
+            Primitive{"disc", "disc", {{"center", "c"}, {"radius", "r"}}},
+            Primitive{"torus",
+                      "torus",
+                      {{"center", "c"},
+                       {"axis", "axis"},
+                       {"major_radius", "R_major"},
+                       {"minor_radius", "r_minor"}}},
+            Primitive{
+                "ellipsoid_triaxial", "ellipsoid", {{"center", "c"}, {"radii", "radii"}}, 1e-5},
+            Primitive{"ellipsoid_5_2_2", "ellipsoid", {{"center", "c"}, {"radii", "radii"}}, 1e-5},
+            Primitive{"ellipsoid_2_2_5", "ellipsoid", {{"center", "c"}, {"radii", "radii"}}, 1e-5},
+            Primitive{"ellipsoid_flat", "ellipsoid", {{"radii", "radii"}}, 1e-5},
+            Primitive{"ellipse2d", "ellipse", {{"center", "c"}, {"radii", "radii"}}, 1e-5},
+            Primitive{"segment2d", "segment", {{"a", "a"}, {"b", "b"}}},
+            Primitive{"segment3d", "segment", {{"a", "a"}, {"b", "b"}}},
+            Primitive{"polyline2d", "polyline", {{"vertices", "verts"}}},
+            Primitive{"polyline3d", "polyline", {{"vertices", "verts"}}},
+            Primitive{"polygon", "polygon", {{"vertices", "verts"}}},
+            Primitive{"polygon_tooth_outer", "polygon", {{"vertices", "verts"}}},
+            Primitive{"circle", "circle", {{"center", "c"}, {"radius", "r"}}},
+            Primitive{"arc",
+                      "arc",
+                      {{"center", "c"},
+                       {"radius", "r"},
+                       {"start", "t0", degrees},
+                       {"end", "t1", degrees}}})),
+    [](const auto& of) {
+      return golden::test_name(std::get<0>(of.param)) + "_" + std::get<1>(of.param).file;
+    });
 
 }  // namespace
 }  // namespace sardf

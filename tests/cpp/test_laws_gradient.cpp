@@ -82,6 +82,8 @@ TEST(GradientLaws, FieldsEqualDifferences) {
         ++tried;
         const Difference expected = difference(f, at, axis, 1);
         if (!(expected.doubt < infinity)) continue;
+        // Where a field that vanishes in a whole region meets another edge, no direction exists.
+        if (value == 0 && std::isnan(gradient[axis])) continue;
         ++compared;
         EXPECT_NEAR(gradient[axis], expected.value, expected.doubt)
             << "axis " << axis << " at " << testing::PrintToString(at);

@@ -63,8 +63,11 @@ void expect_bounds_hold(Random& r, const Evaluator& evaluator, const BoundingBox
       }
     }
     // Rounding grows with the scales and blends on the way.
-    const double rounding = 1e-11 * (largest(at) + largest(before) + std::abs(value));
-    const double allowed = slope.length * norm(at - before);
+    const double scale = largest(at) + largest(before);
+    const double steep = slope.length < infinity ? 1e-15 * slope.length * scale : 0;
+    const double rounding = 1e-11 * (scale + std::abs(value)) + steep;
+    const double apart = norm(at - before);
+    const double allowed = apart == 0 ? 0 : slope.length * apart;
     EXPECT_LE(std::abs(value - value_before), allowed * (1 + 1e-9) + rounding)
         << testing::PrintToString(at) << " and " << testing::PrintToString(before) << " over "
         << text(box);

@@ -48,7 +48,7 @@ TEST(SceneFile, IsRead) {
   EXPECT_EQ(s.comment, "two\nlines");
   EXPECT_EQ(s.units, "cm");
   EXPECT_THAT(s.parameters, ElementsAre(std::pair{"R", 0.5}, std::pair{"twice", 1.0}));
-  ASSERT_EQ(s.fields.size(), 11u);
+  ASSERT_EQ(s.fields.size(), 14u);
   EXPECT_EQ(s.fields[0].name, "part");
   EXPECT_EQ(s.fields[7].field.construction(), s.fields[0].field.construction());
   const Field block = make_field("rounded_box", {Vec3{}, Vec3{20, 12, 8}, 1.0});
@@ -68,7 +68,7 @@ TEST(SceneFile, IsRead) {
   EXPECT_EQ(s.stated_bounds->hi, (Vec3{50, 50, 50}));
   EXPECT_EQ(s.stated_lipschitz, 3);
   EXPECT_EQ(s.view.direction, (Vec3{1, 1, 1}));
-  EXPECT_EQ(s.source.lines.at("/solid"), 19);
+  EXPECT_EQ(s.source.lines.at("/solid"), 26);
 }
 
 // Equal expressions are one node, so equal pointers mean equal scenes.

@@ -177,3 +177,84 @@ def test_a_scene_of_python_is_the_scene_of_the_file(ball):
     scene = sardf.load(str(ball))
     assert list(scene.materials) == ["red", "blue"]
     assert json.loads(scene.to_json())["title"] == "ball"
+
+
+TREE = """{"sardf": 1, "solid": "part", "fields": {
+  "plate": {"polygon": {"vertices": [[0, 0], [0, 4], [4, 4], [4, 0]]}},
+  "part": {"extrude": {"field": {"difference": {"of": [
+    "plate", {"disc": {"center": [2, 2], "radius": 1}}], "blend": {"sardf": 0.5}}}, "height": 2}}}}
+"""
+
+
+@pytest.fixture
+def tree(tmp_path):
+    path = tmp_path / "tree.json"
+    path.write_text(TREE)
+    return path
+
+
+def test_check_labels_every_node_and_remarks_on_contours(tree):
+    lines = run("check", tree).stdout.splitlines()
+    rows = [line for line in lines if "error bound" in line and line.startswith("  ")]
+    assert [(line.split()[0], len(line) - len(line.lstrip())) for line in rows] == [
+        ("plate", 2),
+        ("part", 2),
+        ("difference", 4),
+        ("disc", 6),
+    ]
+    assert "exact, exact, error bound 0; its contour runs clockwise" in rows[0]
+    # One blend of radius 0.5 moves the field by (1 - 1/√2) · 0.5 at most.
+    assert rows[2].split()[1:] == ["estimate,", "estimate,", "error", "bound", "0.146447"]
+
+
+def test_one_switch_changes_the_blend(tree, tmp_path):
+    points = tmp_path / "points.csv"
+    points.write_text("3.3,2,0\n1.9,0.4,0\n")  # 0.3 from the disc and 0.7 from the edge; 0.6, 0.4
+
+    def fields(*options):
+        done = run("eval", tree, "--points", points, *options)
+        assert done.returncode == 0, done.stderr
+        return [float(line.split(",")[3]) for line in done.stdout.splitlines()[1:]]
+
+    disc = [np.hypot(x - 2, y - 2) - 1 for x, y in ((3.3, 2), (1.9, 0.4))]
+    edge = [0.7, 0.4]
+    assert fields("--blend", "min_max") == pytest.approx(np.minimum(disc, edge))
+    r = [a + b - np.hypot(a, b) for a, b in zip(disc, edge, strict=True)]
+    assert fields("--blend", "r_function") == pytest.approx(r)
+    assert fields() == fields("--blend", "sardf=0.5")
+
+
+@pytest.mark.parametrize(
+    ("blend", "message"),
+    [
+        ("sadrf=1", "did you mean 'sardf'?"),
+        ("sardf", "'sardf=NUMBER' is accepted"),
+        ("sardf=0", "radius is 0"),
+        ("sardf=1x", "NAME or NAME=NUMBER is accepted"),
+        ("min_max=1", "'min_max' is accepted"),
+    ],
+)
+def test_a_wrong_blend_is_one_message(tree, blend, message):
+    done = run("check", tree, "--blend", blend)
+    assert done.returncode == 2
+    assert message in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
+def test_textures_can_be_mip_mapped(ball, tmp_path):
+    options = ("--size", 64, "--resolution", 24, "--format", "tx", "--channels", "base_color")
+    done = run("bake", ball, "-o", tmp_path / "out", *options)
+    assert done.returncode == 0, done.stderr
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [
+        "base_color.tx",
+        "part.glb",
+    ]
+    report = subprocess.run(
+        ["oiiotool", "--info", "-v", tmp_path / "out/base_color.tx"],
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout
+    assert "MIP-map levels: 64x64 32x32 16x16 8x8 4x4 2x2 1x1" in report
+    assert "tile size: 64 x 64" in report
+    assert "float tiff" in report

@@ -6,7 +6,7 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['Blend', 'Cancelled', 'Error', 'Field', 'Mesh', 'MinMax', 'RFunction', 'Sardf', 'SardfC1', 'Scene', 'Smooth', 'arc', 'boundary', 'box', 'box2d', 'capsule', 'circle', 'complement', 'cone', 'cylinder', 'difference', 'disc', 'ellipse', 'ellipsoid', 'extrude', 'formula', 'half_space', 'intersection', 'load', 'mirror', 'offset', 'point', 'points', 'polygon', 'polyline', 'revolve', 'rotate', 'rounded_box', 'scale', 'schema', 'segment', 'shell', 'sphere', 'torus', 'translate', 'union', 'x', 'y', 'z']
+__all__: list[str] = ['Blend', 'Cancelled', 'Error', 'Field', 'Mesh', 'MinMax', 'RFunction', 'Sardf', 'SardfC1', 'Scene', 'Smooth', 'arc', 'bend', 'blend_error', 'boundary', 'box', 'box2d', 'capsule', 'circle', 'complement', 'cone', 'cylinder', 'difference', 'disc', 'ellipse', 'ellipsoid', 'extrude', 'formula', 'half_plane', 'half_space', 'implicit_polygon', 'intersection', 'load', 'loft', 'mirror', 'offset', 'point', 'points', 'polygon', 'polyline', 'quadric', 'repeat', 'revolve', 'rotate', 'rounded_box', 'scale', 'schema', 'segment', 'shell', 'sphere', 'torus', 'translate', 'twist', 'union', 'with_blend', 'x', 'y', 'z']
 class Error(ValueError):
     """
     Bad input. file, line and pointer say where, message what and what is accepted.
@@ -162,6 +162,10 @@ class Scene:
         """
         The scene as a scene file's text.
         """
+    def with_blend(self, blend: Blend) -> Scene:
+        """
+        The scene with every union, intersection and difference joined by `blend` in place of its own.
+        """
     @property
     def attributes(self) -> dict:
         """
@@ -176,6 +180,11 @@ class Scene:
     def drawn(self) -> Field:
         """
         The solid with its sections cut away.
+        """
+    @property
+    def fields(self) -> dict:
+        """
+        {name: Field} of the scene's named fields.
         """
     @property
     def materials(self) -> list[str]:
@@ -249,6 +258,23 @@ def arc(center: typing.Sequence[float] = ..., radius: float = ..., start: float 
     radius: its radius (scene units); positive
     start: where it starts, counter-clockwise from +x (degrees)
     end: where it ends: more than start, by at most 360 (degrees)
+    """
+def bend(field: Field | float | str, radius: float) -> Field:
+    """
+    bend(field, radius)
+    
+    A field bent about an axis parallel to y, so that what lies along x at z = 0 becomes an arc towards +z of equal length. At d from the axis its slope is at most max(1, radius/d) times the field's; on the axis it is not bounded.
+    
+    field: what is bent; it should lie within half a turn of x = 0
+    radius: of the arc that z = 0 becomes (scene units); positive
+    """
+def blend_error(field: Field | float | str) -> Field:
+    """
+    blend_error(field)
+    
+    How far blending moves a field: the field minus the same tree with minima and maxima. It is no distance.
+    
+    field: the field
     """
 def boundary(solid: Field | float | str) -> Field:
     """
@@ -378,6 +404,15 @@ def formula(text: str, **kwargs) -> Field:
     
     A field from a formula over x, y, z, pi and the given fields or numbers, e.g. formula("sin(k*x) + part", k=2, part=box).
     """
+def half_plane(point: typing.Sequence[float] = ..., normal: typing.Sequence[float] = ...) -> Field:
+    """
+    half_plane(point=(0, 0), normal)
+    
+    All of the xy plane on one side of a line.
+    
+    point: a point of the line (scene units)
+    normal: perpendicular to the line, pointing inwards; of any length but 0
+    """
 def half_space(point: typing.Sequence[float] = ..., normal: str | typing.Sequence[float] = ...) -> Field:
     """
     half_space(point=(0, 0, 0), normal=(0, 0, 1))
@@ -386,6 +421,15 @@ def half_space(point: typing.Sequence[float] = ..., normal: str | typing.Sequenc
     
     point: a point of the plane (scene units)
     normal: direction that points into the solid
+    """
+def implicit_polygon(vertices: typing.Sequence[typing.Sequence[float]] | numpy.ndarray, blend: Blend = ...) -> Field:
+    """
+    implicit_polygon(vertices, blend=None)
+    
+    The inside of a closed contour without self-intersections, as unions and intersections of its edges' lines. Its sign is the polygon's; its value is no distance, since edges are extended to lines.
+    
+    vertices: its corners in order, either way round (scene units)
+    blend: how the lines are joined
     """
 def intersection(*of: Field, blend: Blend = ...) -> Field:
     """
@@ -399,6 +443,15 @@ def intersection(*of: Field, blend: Blend = ...) -> Field:
 def load(path: str) -> Scene:
     """
     Reads a scene file. Raises Error with all that is wrong in it.
+    """
+def loft(sections: typing.Sequence[typing.Any], interpolation: str = ...) -> Field:
+    """
+    loft(sections, interpolation='smooth')
+    
+    A solid through plane fields at several heights, cut off at the lowest and the highest. Between them the fields are interpolated, which gives no distance.
+    
+    sections: plane fields and their heights, from the lowest to the highest (scene units)
+    interpolation: 'smooth': the sides have no crease at a section; 'linear': straight in between
     """
 def mirror(field: Field | float | str, point: typing.Sequence[float] = ..., normal: str | typing.Sequence[float] = ...) -> Field:
     """
@@ -451,6 +504,26 @@ def polyline(vertices: typing.Sequence[typing.Sequence[float]] | numpy.ndarray, 
     
     vertices: its corners in order (scene units)
     closed: whether the last corner is joined to the first
+    """
+def quadric(matrix: typing.Sequence[typing.Sequence[float]] | numpy.ndarray, vector: typing.Sequence[float] = ..., constant: float = ...) -> Field:
+    """
+    quadric(matrix, vector=(0, 0, 0), constant=1)
+    
+    Where the quadratic polynomial p · M p + v · p + c is not negative: ellipsoids, cones, paraboloids, hyperboloids. Its value is no distance.
+    
+    matrix: M, three rows of three numbers
+    vector: v
+    constant: c; with the unit ball's M, -1 on the diagonal, its radius squared
+    """
+def repeat(field: Field | float | str, spacing: typing.Sequence[float], counts: typing.Sequence[float] = ...) -> Field:
+    """
+    repeat(field, spacing, counts=None)
+    
+    Copies of a solid at equal steps along the axes, joined by their largest value. Without counts they go on for ever; then the nearest copies are evaluated, two along each axis, and the distance stays what it is outside if it is proven that a copy fits between its neighbours.
+    
+    field: what is repeated
+    spacing: the step along x, y and z; 0 where nothing is repeated (scene units); not negative
+    counts: whole numbers of copies along x, y and z, from the field itself in the positive direction; without end in both directions when not given
     """
 def revolve(field: Field | float | str) -> Field:
     """
@@ -545,6 +618,17 @@ def translate(field: Field | float | str, by: typing.Sequence[float]) -> Field:
     field: what is moved
     by: the displacement (scene units)
     """
+def twist(field: Field | float | str, rate: float, axis: str | typing.Sequence[float] = ..., center: typing.Sequence[float] = ...) -> Field:
+    """
+    twist(field, rate, axis=(0, 0, 1), center=(0, 0, 0))
+    
+    A field turned about an axis in proportion to the height along it. It stretches distances: at r from the axis its slope is at most (kr + sqrt(k²r² + 4)) / 2 times the field's, k being the rate in radians.
+    
+    field: what is twisted
+    rate: degrees for each unit of height (degrees)
+    axis: the axis of the turn
+    center: a point of the axis, at which nothing turns (scene units)
+    """
 def union(*of: Field, blend: Blend = ...) -> Field:
     """
     union(*of, blend=None)
@@ -552,6 +636,15 @@ def union(*of: Field, blend: Blend = ...) -> Field:
     All points of any of the solids, joined from the left.
     
     of: the solids
+    blend: how they are joined
+    """
+def with_blend(field: Field | float | str, blend: Blend = ...) -> Field:
+    """
+    with_blend(field, blend=None)
+    
+    A field whose unions, intersections and differences, however deep, are all joined by another blend.
+    
+    field: the field
     blend: how they are joined
     """
 __version__: str = '0.1.0'

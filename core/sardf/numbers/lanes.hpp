@@ -1,4 +1,4 @@
-// The number type for bulk evaluation: several floats at once.
+// The number type for bulk evaluation: several floats at once, or two doubles.
 //
 // One class for each instruction set, so that the templates instantiated for it are distinct types:
 // code compiled for AVX-512 can never be merged by the linker into the baseline's.
@@ -17,62 +17,86 @@ namespace sardf {
 
 struct Baseline {
   static constexpr int width = 4;
-  typedef float Floats __attribute__((vector_size(16)));
+  using Number = float;
+  typedef float Values __attribute__((vector_size(16)));
   typedef int Ints __attribute__((vector_size(16)));
 };
 struct Avx2 {
   static constexpr int width = 8;
-  typedef float Floats __attribute__((vector_size(32)));
+  using Number = float;
+  typedef float Values __attribute__((vector_size(32)));
   typedef int Ints __attribute__((vector_size(32)));
 };
 struct Avx512 {
   static constexpr int width = 16;
-  typedef float Floats __attribute__((vector_size(64)));
+  using Number = float;
+  typedef float Values __attribute__((vector_size(64)));
   typedef int Ints __attribute__((vector_size(64)));
+};
+/// Doubles with the same results as one by one; on every machine that compiles for the baseline.
+struct TwoDoubles {
+  static constexpr int width = 2;
+  using Number = double;
+  typedef double Values __attribute__((vector_size(16)));
+  typedef long long Ints __attribute__((vector_size(16)));
 };
 
 template <class Isa>
 struct LanesMask {
-  using Bits = typename Isa::Ints;
-  Bits bits;
+  typename Isa::Ints bits;
   friend LanesMask operator&&(LanesMask a, LanesMask b) { return {a.bits & b.bits}; }
   friend LanesMask operator||(LanesMask a, LanesMask b) { return {a.bits | b.bits}; }
   friend LanesMask operator!(LanesMask a) { return {~a.bits}; }
 };
+#if defined(__AVX512F__)
+/// AVX-512 has registers for masks, and moves between them and vectors are dear.
+template <>
+struct LanesMask<Avx512> {
+  __mmask16 bits;
+  friend LanesMask operator&&(LanesMask a, LanesMask b) { return {__mmask16(a.bits & b.bits)}; }
+  friend LanesMask operator||(LanesMask a, LanesMask b) { return {__mmask16(a.bits | b.bits)}; }
+  friend LanesMask operator!(LanesMask a) { return {__mmask16(~a.bits)}; }
+};
+#endif
 
 template <class Isa>
 bool all(LanesMask<Isa> mask) {
-#if defined(__AVX512DQ__)
-  if constexpr (Isa::width == 16) return _mm512_movepi32_mask((__m512i)mask.bits) == 0xFFFF;
+#if defined(__AVX512F__)
+  if constexpr (Isa::width == 16) return mask.bits == 0xFFFF;
 #endif
 #if defined(__AVX2__)
   if constexpr (Isa::width == 8) return _mm256_movemask_ps((__m256)mask.bits) == 0xFF;
 #endif
 #if defined(__SSE2__)
   if constexpr (Isa::width == 4) return _mm_movemask_ps((__m128)mask.bits) == 0xF;
+  if constexpr (Isa::width == 2) return _mm_movemask_pd((__m128d)mask.bits) == 0x3;
 #endif
-  int both = -1;
-  for (int i = 0; i < Isa::width; ++i) both &= mask.bits[i];
-  return both != 0;
+  if constexpr (Isa::width < 16) {
+    bool every = true;
+    for (int i = 0; i < Isa::width; ++i) every = every && mask.bits[i] != 0;
+    return every;
+  }
 }
 
 template <class Isa>
 struct Lanes {
   static constexpr int width = Isa::width;
   using Mask = LanesMask<Isa>;
-  using Values = typename Isa::Floats;
+  using Number = typename Isa::Number;
+  using Values = typename Isa::Values;
+  using Ints = typename Isa::Ints;
   Values v;
 
   Lanes() = default;
-  Lanes(double a) : v(float(a) - Values{}) {}
+  Lanes(double a) : v(Number(a) - Values{}) {}
   explicit Lanes(Values values) : v(values) {}
 
-  static Lanes load(const float* from) {
+  static Lanes load(const Number* from) {
     Lanes a;
     std::memcpy(&a.v, from, sizeof a.v);
     return a;
   }
-  void store(float* to) const { std::memcpy(to, &v, sizeof v); }
+  void store(Number* to) const { std::memcpy(to, &v, sizeof v); }
 
   template <class F>
   static Lanes each(const Lanes& a, F f) {
@@ -92,11 +116,32 @@ struct Lanes {
   friend Lanes operator*(Lanes a, Lanes b) { return Lanes(a.v * b.v); }
   friend Lanes operator/(Lanes a, Lanes b) { return Lanes(a.v / b.v); }
   friend Lanes operator-(Lanes a) { return Lanes(-a.v); }
-  friend Mask operator<(Lanes a, Lanes b) { return {a.v < b.v}; }
-  friend Mask operator<=(Lanes a, Lanes b) { return {a.v <= b.v}; }
-  friend Mask operator>(Lanes a, Lanes b) { return {a.v > b.v}; }
-  friend Mask operator>=(Lanes a, Lanes b) { return {a.v >= b.v}; }
-  friend Lanes select(Mask m, Lanes a, Lanes b) { return Lanes(m.bits ? a.v : b.v); }
+  friend Mask operator<(Lanes a, Lanes b) {
+#if defined(__AVX512F__)
+    if constexpr (width == 16)
+      return {_mm512_cmp_ps_mask((__m512)a.v, (__m512)b.v, _CMP_LT_OQ)};
+    else
+#endif
+      return {a.v < b.v};
+  }
+  friend Mask operator<=(Lanes a, Lanes b) {
+#if defined(__AVX512F__)
+    if constexpr (width == 16)
+      return {_mm512_cmp_ps_mask((__m512)a.v, (__m512)b.v, _CMP_LE_OQ)};
+    else
+#endif
+      return {a.v <= b.v};
+  }
+  friend Mask operator>(Lanes a, Lanes b) { return b < a; }
+  friend Mask operator>=(Lanes a, Lanes b) { return b <= a; }
+  friend Lanes select(Mask m, Lanes a, Lanes b) {
+#if defined(__AVX512F__)
+    if constexpr (width == 16)
+      return Lanes((Values)_mm512_mask_blend_ps(m.bits, (__m512)b.v, (__m512)a.v));
+    else
+#endif
+      return Lanes(m.bits ? a.v : b.v);
+  }
 
   friend Lanes min(Lanes a, Lanes b) {
 #if defined(__AVX512F__)
@@ -107,8 +152,9 @@ struct Lanes {
 #endif
 #if defined(__SSE2__)
     if constexpr (width == 4) return Lanes((Values)_mm_min_ps((__m128)a.v, (__m128)b.v));
+    if constexpr (width == 2) return Lanes((Values)_mm_min_pd((__m128d)a.v, (__m128d)b.v));
 #endif
-    return Lanes(a.v < b.v ? a.v : b.v);
+    return select(a < b, a, b);
   }
   friend Lanes max(Lanes a, Lanes b) {
 #if defined(__AVX512F__)
@@ -119,8 +165,9 @@ struct Lanes {
 #endif
 #if defined(__SSE2__)
     if constexpr (width == 4) return Lanes((Values)_mm_max_ps((__m128)a.v, (__m128)b.v));
+    if constexpr (width == 2) return Lanes((Values)_mm_max_pd((__m128d)a.v, (__m128d)b.v));
 #endif
-    return Lanes(a.v > b.v ? a.v : b.v);
+    return select(a > b, a, b);
   }
   friend Lanes sqrt(Lanes a) {
 #if defined(__AVX512F__)
@@ -131,8 +178,9 @@ struct Lanes {
 #endif
 #if defined(__SSE2__)
     if constexpr (width == 4) return Lanes((Values)_mm_sqrt_ps((__m128)a.v));
+    if constexpr (width == 2) return Lanes((Values)_mm_sqrt_pd((__m128d)a.v));
 #endif
-    return each(a, [](float s) { return std::sqrt(s); });
+    return each(a, [](Number s) { return std::sqrt(s); });
   }
   friend Lanes floor(Lanes a) {
 #if defined(__AVX512F__)
@@ -141,11 +189,11 @@ struct Lanes {
 #if defined(__AVX__)
     if constexpr (width == 8) return Lanes((Values)_mm256_floor_ps((__m256)a.v));
 #endif
-    return each(a, [](float s) { return std::floor(s); });
+    return each(a, [](Number s) { return std::floor(s); });
   }
   friend Lanes abs(Lanes a) {
-    typename Mask::Bits bits = (typename Mask::Bits)a.v & 0x7FFFFFFF;
-    return Lanes((Values)bits);
+    const Values signs = -Values{};
+    return Lanes((Values)((Ints)a.v & ~(Ints)signs));
   }
   friend Lanes square(Lanes a) { return a * a; }
   friend Lanes freeze(Lanes a) { return a; }
@@ -153,37 +201,39 @@ struct Lanes {
 
   // The C library's scalar functions: the same result for every instruction set.
   friend Lanes exp(Lanes a) {
-    return each(a, [](float s) { return std::exp(s); });
+    return each(a, [](Number s) { return std::exp(s); });
   }
   friend Lanes log(Lanes a) {
-    return each(a, [](float s) { return std::log(s); });
+    return each(a, [](Number s) { return std::log(s); });
   }
   friend Lanes sin(Lanes a) {
-    return each(a, [](float s) { return std::sin(s); });
+    return each(a, [](Number s) { return std::sin(s); });
   }
   friend Lanes cos(Lanes a) {
-    return each(a, [](float s) { return std::cos(s); });
+    return each(a, [](Number s) { return std::cos(s); });
   }
   friend Lanes tan(Lanes a) {
-    return each(a, [](float s) { return std::tan(s); });
+    return each(a, [](Number s) { return std::tan(s); });
   }
   friend Lanes asin(Lanes a) {
-    return each(a, [](float s) { return std::asin(s); });
+    return each(a, [](Number s) { return std::asin(s); });
   }
   friend Lanes acos(Lanes a) {
-    return each(a, [](float s) { return std::acos(s); });
+    return each(a, [](Number s) { return std::acos(s); });
   }
   friend Lanes atan2(Lanes a, Lanes b) {
-    return each(a, b, [](float s, float t) { return std::atan2(s, t); });
+    return each(a, b, [](Number s, Number t) { return std::atan2(s, t); });
   }
   friend Lanes pow(Lanes a, Lanes b) {
-    return each(a, b, [](float s, float t) { return std::pow(s, t); });
+    return each(a, b, [](Number s, Number t) { return std::pow(s, t); });
   }
 };
 
 template <class Isa, class T, class Full>
 T shortcut(LanesMask<Isa> mask, const T& cheap, Full full) {
-  return all(mask) ? cheap : select(mask, cheap, full());
+  if (all(mask)) [[likely]]
+    return cheap;
+  return select(mask, cheap, full());
 }
 
 }  // namespace sardf

@@ -12,25 +12,6 @@
 namespace sardf::bench {
 namespace {
 
-constexpr size_t side = 256, slices = 64;
-constexpr size_t points_in_grid = side * side * slices;
-
-/// work(x, y, z) on the rows of a grid over the shape's bounds, 256 points each.
-template <class T, class Work>
-void for_rows(Shape which, Work work) {
-  const BoundingBox box = bounds(which);
-  const Vec3 size = box.size();
-  alignas(64) T x[side], y[side], z[side];
-  for (size_t i = 0; i < side; ++i) x[i] = T(box.lo[0] + size[0] * double(i) / (side - 1));
-  for (size_t k = 0; k < slices; ++k) {
-    std::fill_n(z, side, T(box.lo[2] + size[2] * double(k) / (slices - 1)));
-    for (size_t j = 0; j < side; ++j) {
-      std::fill_n(y, side, T(box.lo[1] + size[1] * double(j) / (side - 1)));
-      work(x, y, z);
-    }
-  }
-}
-
 void count(benchmark::State& state, size_t points) {
   state.counters["points"] =
       benchmark::Counter(double(points) * double(state.iterations()), benchmark::Counter::kIsRate);

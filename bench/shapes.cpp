@@ -31,9 +31,9 @@ Expression drilled_block(const BlendPointer& blend) {
 
 }  // namespace
 
-Expression shape(Shape which) {
+Expression shape(Shape which, const std::string& rounded) {
   if (which == Shape::spheres) return spheres();
-  return drilled_block(which == Shape::block ? min_max_blend() : make_blend("sardf", {0.5}));
+  return drilled_block(which == Shape::block ? min_max_blend() : make_blend(rounded, {0.5}));
 }
 
 BoundingBox bounds(Shape which) {

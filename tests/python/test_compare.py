@@ -10,13 +10,15 @@ import sardf
 ROOT = Path(__file__).resolve().parents[2]
 SARDF = ROOT / ".venv/bin/sardf"
 SCENES = sorted(path.stem for path in (ROOT / "scenes").glob("*.json"))
+# Stripes and steep gradients need more pixels for enough of them to be flat.
+STEEP = [name for name in SCENES if name.endswith("_stripes")] + ["tooth_cut", "tooth_slice"]
 LATTICES = ["gyroid_sandwich"]
 BLENDERS = ["blender", str(ROOT / ".venv-bpy/bin/python")]
 
 
-def compare(output, scenes, *options, blenders=BLENDERS):
-    """Runs `sardf compare` at 320 × 240; its exit code and numbers."""
-    command = [SARDF, "compare", *scenes, "-o", output, "--size", "320x240"]
+def compare(output, scenes, *options, blenders=BLENDERS, size="320x240"):
+    """Runs `sardf compare`; its exit code and numbers."""
+    command = [SARDF, "compare", *scenes, "-o", output, "--size", size]
     for blender in blenders:
         command += ["--blender", blender]
     done = subprocess.run(
@@ -30,17 +32,32 @@ def compare(output, scenes, *options, blenders=BLENDERS):
 def numbers(tmp_path_factory):
     output = tmp_path_factory.mktemp("compare")
     lattices = [word for name in LATTICES for word in ("--lattice", name)]
-    scenes = [ROOT / "scenes" / f"{name}.json" for name in SCENES]
+    scenes = [ROOT / "scenes" / f"{name}.json" for name in SCENES if name not in STEEP]
     return compare(output, scenes, *lattices)[1]
 
 
+def missed(verdict):
+    """The criteria that do not hold."""
+    assert verdict["passes"] == all(c["holds"] for c in verdict["criteria"])
+    return [c for c in verdict["criteria"] if not c["holds"]]
+
+
 @pytest.mark.parametrize("blender", range(len(BLENDERS)))
-@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("scene", sorted(set(SCENES) - set(STEEP)))
 @pytest.mark.timeout(1800)
 def test_pictures_agree(numbers, scene, blender):
-    verdict = list(numbers[scene].values())[blender]
-    missed = [c for c in verdict["criteria"] if not c["holds"]]
-    assert verdict["passes"], missed
+    assert not missed(list(numbers[scene].values())[blender])
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("scene", STEEP)
+@pytest.mark.timeout(1800)
+def test_large_pictures_agree(tmp_path, scene):
+    path = ROOT / "scenes" / f"{scene}.json"
+    verdicts = compare(tmp_path / "out", [path], size="640x480")[1][scene]
+    assert len(verdicts) == len(BLENDERS)
+    for verdict in verdicts.values():
+        assert not missed(verdict)
 
 
 # A block cut open, coloured by its distances to a ball and its middle, or by the field of the block

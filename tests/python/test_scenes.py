@@ -16,7 +16,20 @@ ROOT = Path(__file__).resolve().parents[2]
 SCENES = sorted((ROOT / "scenes").glob("*.json"))
 RESOLUTION = 128
 # Euler characteristics counted by hand: 2 - 2 × (through holes) for each connected piece.
-EULER = {"two_ellipsoids": 2, "cad_pins": 2, "lined_bore": -4, "diamond_cutter": 2}
+EULER = {
+    "two_ellipsoids": 2,
+    "cad_pins": 2,
+    "cad_pins_stripes": 2,
+    "cad_plate": 0,
+    "cad_plate_cut": 2,
+    "cad_plate_stripes": 2,
+    "diamond_cutter": 2,
+    "lined_bore": -4,
+    "tooth": 2,
+    "tooth_cut": 2,
+    "tooth_slice": 2,
+    "tooth_stripes": 2,
+}
 
 
 @pytest.fixture(scope="module", params=SCENES, ids=lambda path: path.stem)

@@ -7,7 +7,7 @@ PLATE = "scenes/cad_plate.json --section z=0"
 SLICE = "scenes/tooth_slice.json --section z=0"
 PINS = "scenes/cad_pins.json"
 ZONES = "--outline growing_arcs fixed_arcs --no-outline"
-BLENDS = "--blend sardf=0.5 min_max r_function"
+BLENDS = "--blend sardf=0.5 sardf_c1=0.5 min_max r_function smooth=0.5"
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,8 @@ ACCURACY = [
     for scene in ("scenes/two_ellipsoids.json", "scenes/cad_plate.json")
     for blend in ("sardf=0.5", "min_max")
 ]
+# The picture that sardf.accuracy draws, and how it is asked to.
+MAP = ("sardf_true_error.png", "scenes/two_ellipsoids.json --section y=0")
 BOUNDED = (
     ("two_ellipsoids", "both", "y"),
     ("cad_plate", "part", "z"),
@@ -47,8 +49,17 @@ def generated() -> str:
         bounds=bounds_table(),
         accuracy=accuracy_table(),
         commands="\n".join(f"$ python -m sardf.accuracy {words}" for words in ACCURACY),
+        map=map_text(),
         typos=table(("place", "printed", "read as", "because"), tables.TYPOS),
         chosen=table(("section", "not printed", "chosen here"), tables.CHOSEN),
+    )
+
+
+def map_text() -> str:
+    image, words = MAP
+    return (
+        f"![Where the two ellipsoids' field differs from the true distance](images/{image})\n\n"
+        f"```console\n$ python -m sardf.accuracy {words} -o {image}\n```"
     )
 
 

@@ -5,11 +5,13 @@ import math
 import subprocess
 import sys
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import sardf
 import sardf.accuracy
 from sardf.accuracy import _reference
+from sardf.accuracy.__main__ import main
 
 FEW = 20_000  # triangles, so that these tests are quick
 
@@ -217,3 +219,21 @@ def test_wrong_usage_of_the_command(tmp_path, arguments, message):
     assert (done.returncode, done.stdout) == (2, "")
     assert message in done.stderr
     assert "Traceback" not in done.stderr
+
+
+def test_a_map_is_a_picture(tmp_path, capsys):
+    """Two unit balls with their centres 1 apart: inside, max is right but near the lens."""
+    scene = tmp_path / "balls.json"
+    balls = [{"sphere": {"radius": 1}}, {"sphere": {"center": [1, 0, 0], "radius": 1}}]
+    scene.write_text(json.dumps({"sardf": 1, "title": "balls", "solid": {"union": {"of": balls}}}))
+    picture = tmp_path / "map.png"
+    words = [str(scene), "--resolution", "32", "--samples", "40"]
+    assert main([*words, "--section", "y=0", "-o", str(picture)]) == 0
+    assert "inside" in capsys.readouterr().out
+    colors = plt.imread(picture)[:, :, :3]
+    # The lens is dark, the rest of the map as light as an error of 0.
+    assert colors.min() < 0.3
+    assert (colors.min(axis=2) > 0.9).mean() > 0.5
+    assert main([*words, "-o", str(tmp_path / "other.png")]) == 2
+    assert "a map needs a plane" in capsys.readouterr().err
+    assert not (tmp_path / "other.png").exists()

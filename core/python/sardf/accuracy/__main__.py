@@ -8,6 +8,9 @@ import sys
 import sardf
 from sardf import _command
 from sardf.accuracy import measure, measure_section
+from sardf.accuracy._map import write_map
+
+PICTURES = ("png", "svg", "pdf")
 
 
 def parser():
@@ -31,7 +34,10 @@ def parser():
     )  # fmt: skip
     made.add_argument("--section", metavar="AXIS=VALUE", help="points on a plane, such as y=0")
     made.add_argument(
-        "-o", "--output", metavar="FILE", help="table as .json, or every point as .csv"
+        "-o",
+        "--output",
+        metavar="FILE",
+        help="table as .json, every point as .csv, or a section's map as .png, .svg or .pdf",
     )
     return made
 
@@ -72,20 +78,25 @@ def section_of(text):
 
 def run(options):
     ending = (options.output or ".json").rpartition(".")[2]
-    if ending not in ("json", "csv"):
-        wrong(f"{options.output}: .json and .csv can be written")
+    if ending not in ("json", "csv", *PICTURES):
+        wrong(f"{options.output}: .json, .csv, .png, .svg and .pdf can be written")
+    if ending in PICTURES and not options.section:
+        wrong(f"{options.output}: a map needs a plane, such as --section y=0")
     given = {"resolution": options.resolution}
     if options.bounds:
         given["bounds"] = (options.bounds[:3], options.bounds[3:])
     if options.samples:
         given["samples"] = options.samples
+    scene = chosen(options)
     if options.section:
         axis, at = section_of(options.section)
-        measured = measure_section(chosen(options), axis, at, **given)
+        measured = measure_section(scene, axis, at, **given)
     else:
-        measured = measure(chosen(options), **given)
+        measured = measure(scene, **given)
     print(measured.text(), end="")
-    if options.output:
+    if ending in PICTURES:
+        write_map(options.output, scene, measured)
+    elif options.output:
         table = json.dumps(measured.summary(), indent=2) + "\n"
         _command.write_text(options.output, table if ending == "json" else measured.csv())
 

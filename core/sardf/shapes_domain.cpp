@@ -71,9 +71,11 @@ struct Plan {
 
 Plan plan(const Repeat& repeat) {
   const std::array<int, 3> counts = checked_counts(repeat);
+  const bool exact = repeat.field.quality().outside == Exactness::exact;
+  const bool endless = counts[0] * counts[1] * counts[2] == 0;
+  if (!exact && !endless) return {counts, {}, false};  // all copies will be evaluated
   const Vec3 center = middle(repeat.field);
-  return {counts, center,
-          repeat.field.quality().outside == Exactness::exact && fits(repeat, center)};
+  return {counts, center, exact && fits(repeat, center)};
 }
 
 Expression largest(const std::vector<Expression>& all) {

@@ -209,7 +209,7 @@ def test_command(tmp_path):
         (["--blend", "sardf"], "as in sardf=0.5"),
         (["--blend", "sardf=a"], "'a' is no number"),
         (["--section", "w=3"], "as in y=0"),
-        (["-o", "table.txt"], ".json and .csv can be written"),
+        (["-o", "table.txt"], ".json, .csv, .png, .svg and .pdf can be written"),
     ],
 )
 def test_wrong_usage_of_the_command(tmp_path, arguments, message):

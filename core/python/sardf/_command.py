@@ -1,14 +1,21 @@
 """What the commands `python -m sardf...` share: exit codes as those of `sardf`, and whole files."""
 
+import contextlib
 import importlib
+import itertools
 import os
-import secrets
 import sys
 from pathlib import Path
 
 from sardf._core import Cancelled, Error
 
 DONE, FAILED, WRONG_INPUT = 0, 1, 2
+_count = itertools.count()
+
+
+class Failure(Error):
+    """What went wrong although the input was right: a file that cannot be written, a program that
+    is missing."""
 
 
 def located_error(message, file="", line=0, pointer=""):
@@ -33,6 +40,8 @@ def run(name, main, arguments):
     try:
         main(arguments)
         return DONE
+    except Failure as failure:
+        code, said = FAILED, str(failure)
     except Error as error:
         code, said = WRONG_INPUT, str(error)
     except Cancelled:
@@ -50,16 +59,27 @@ def run(name, main, arguments):
     return code
 
 
+@contextlib.contextmanager
+def completed(path):
+    """A hidden name in the same folder, renamed to `path` in the end or removed on an error."""
+    path = Path(path)
+    if path.is_dir():
+        raise Failure(f"{path}: cannot be written: it is a folder")
+    temporary = path.with_name(f".{path.name}.{os.getpid()}-{next(_count)}.partial")
+    try:
+        yield temporary
+        os.replace(temporary, path)
+    except OSError as error:
+        raise Failure(f"{path}: cannot be written: {error.strerror or error}") from None
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
 def write_text(path, text):
     """Writes a file under a temporary name and renames it; `-` is the standard output."""
     if str(path) == "-":
         sys.stdout.write(text)
         sys.stdout.flush()
         return
-    path = Path(path)
-    temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}")
-    try:
+    with completed(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)

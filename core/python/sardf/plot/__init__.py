@@ -20,9 +20,9 @@ except ModuleNotFoundError:
     # With this name, python -m prints the sentence instead of a traceback.
     raise ImportError("plots need matplotlib: pip install 'sardf[plot]'", name=__name__) from None
 
+from sardf._command import Failure
 from sardf.plot.blends import blend_from
 from sardf.plot.look import Look
-from sardf.plot.names import Failure
 from sardf.plot.output import save, write_csv
 from sardf.plot.planes import Plane, plane
 from sardf.plot.quantities import Quantity, quantities

@@ -1,42 +1,18 @@
 """python -m sardf.plot: figures from one command."""
 
-import os
 import sys
 
 import sardf
-from sardf import plot
+from sardf import _command, plot
 from sardf.plot.arguments import parse
 from sardf.plot.look import Look, bands_from, lines_from
-from sardf.plot.names import Failure, fail
+from sardf.plot.names import fail
 from sardf.plot.output import format_of
-
-DONE, FAILED, WRONG_INPUT = 0, 1, 2
 
 
 def main(words=None) -> int:
     """Runs the command line; the exit code."""
-    options = parse(sys.argv[1:] if words is None else words)
-    try:
-        run(options)
-    except Failure as failure:
-        return _say(failure, FAILED)
-    except sardf.Error as error:
-        return _say(error, WRONG_INPUT)
-    except (KeyboardInterrupt, sardf.Cancelled):
-        return _say("cancelled", FAILED)
-    except MemoryError:
-        return _say("not enough memory", FAILED)
-    except BrokenPipeError:  # nobody reads any more, nor at the end of the program
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return FAILED
-    except OSError as error:
-        return _say(error, FAILED)
-    return DONE
-
-
-def _say(message, code: int) -> int:
-    print(f"sardf.plot: {message}", file=sys.stderr)
-    return code
+    return _command.run("sardf.plot", run, parse(sys.argv[1:] if words is None else words))
 
 
 def run(options) -> None:

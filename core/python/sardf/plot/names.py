@@ -1,15 +1,10 @@
-"""Names that a user may mistype, and the two kinds of things that can go wrong."""
+"""Names that a user may mistype."""
 
 import difflib
 
 import sardf
 
 LONGEST_LIST = 40
-
-
-class Failure(sardf.Error):
-    """What went wrong although the input was right: a file that cannot be written, a program that
-    is missing."""
 
 
 def fail(message: str):

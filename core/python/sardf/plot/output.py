@@ -1,14 +1,12 @@
 """Figures and numbers as files that appear under their names only when they are complete."""
 
-import contextlib
 import csv
-import itertools
-import os
 import sys
 from pathlib import Path
 
+from sardf._command import completed
 from sardf.plot import parts
-from sardf.plot.names import Failure, choose, fail
+from sardf.plot.names import choose, fail
 
 FIGURES = ("png", "svg", "pdf")
 FORMATS = (*FIGURES, "csv")
@@ -18,7 +16,6 @@ METADATA = {
     "svg": {"Date": None, "Creator": None},
     "pdf": {"CreationDate": None, "Producer": None, "Creator": None},
 }
-_count = itertools.count()
 
 
 def format_of(path) -> str:
@@ -56,19 +53,3 @@ def _write_rows(file, header, rows) -> None:
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(header)
     writer.writerows(rows.tolist())
-
-
-@contextlib.contextmanager
-def completed(path):
-    """A hidden name in the same folder, renamed to `path` in the end or removed on an error."""
-    path = Path(path)
-    if path.is_dir():
-        raise Failure(f"{path}: cannot be written: it is a folder")
-    temporary = path.with_name(f".{path.name}.{os.getpid()}-{next(_count)}.partial")
-    try:
-        yield temporary
-        os.replace(temporary, path)
-    except OSError as error:
-        raise Failure(f"{path}: cannot be written: {error.strerror or error}") from None
-    finally:
-        temporary.unlink(missing_ok=True)

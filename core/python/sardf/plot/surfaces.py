@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 
 import sardf
-from sardf.plot.names import Failure, fail
+from sardf._command import Failure
+from sardf.plot.names import fail
 from sardf.plot.numbers import brief, number, point
 from sardf.plot.quantities import Quantity, material_colors, quantities
 from sardf.plot.sections import table

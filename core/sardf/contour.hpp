@@ -11,6 +11,11 @@ namespace sardf {
 /// Corners in order, either way round; the last is joined to the first.
 using Contour = std::vector<Vec2>;
 
+/// Twice the area of the triangle o, a, b, positive where it runs counter-clockwise.
+inline double cross(const Vec2& o, const Vec2& a, const Vec2& b) {
+  return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
+}
+
 /// Twice the area, positive where the corners run counter-clockwise.
 double doubled_area(const Contour& contour);
 

@@ -248,10 +248,6 @@ Expression place_of_largest(const std::vector<Partition::Part>& of) {
   return place;
 }
 
-}  // namespace
-
-namespace {
-
 // How far each part counts at a point that it contains, or, with a width, is near to.
 std::vector<Expression> presence(const Partition& partition, const Expression& tolerance) {
   std::vector<Expression> in;

@@ -11,10 +11,6 @@ namespace sardf {
 
 namespace {
 
-double cross(const Vec2& o, const Vec2& a, const Vec2& b) {
-  return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
-}
-
 /// A formula of a contour that runs counter-clockwise.
 class LineFormula {
  public:

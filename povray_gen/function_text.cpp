@@ -160,6 +160,9 @@ int FunctionWriter::add_guarded_call(Terms& terms, const Node& node, std::span<c
 int FunctionWriter::add_call(Terms& terms, const Operation& operation,
                              std::span<const int> inputs) {
   const OperationInfo& info = operation.info();
+  if (!operation.has_formula()) {
+    throw Error("'" + info.name + "' has no formula that POV-Ray could evaluate");
+  }
   const auto [known, added] = operations_.try_emplace({info.name, operation.numbers()});
   if (added) {
     Terms own;

@@ -19,7 +19,8 @@ constexpr size_t costly_steps = 150;
 Expression cheap_upper_bound(const Node& node) {
   if (node.type != Node::Type::operation) return nullptr;
   const Operation& operation = *node.operation;
-  if (operation.info().kind != Kind::solid || !operation.is_distance() || node.arity != 3) {
+  if (operation.info().kind != Kind::solid || !operation.is_distance() || node.arity != 3 ||
+      !operation.has_formula()) {
     return nullptr;
   }
   Trace trace(3);

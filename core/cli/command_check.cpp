@@ -10,6 +10,7 @@
 #include "sardf/certify.hpp"
 #include "sardf/constructor.hpp"
 #include "sardf/contour.hpp"
+#include "sardf/field_parts.hpp"
 #include "sardf/scene.hpp"
 #include "sardf/volume.hpp"
 
@@ -87,15 +88,7 @@ void add_volumes(Table& table, const Scene& scene, int resolution) {
 std::vector<Field> parts_of(const Field& field) {
   std::vector<Field> parts;
   if (!field.construction()) return parts;
-  for (const Value& value : field.construction()->arguments) {
-    if (const auto* one = std::get_if<Field>(&value)) parts.push_back(*one);
-    if (const auto* all = std::get_if<std::vector<Field>>(&value)) {
-      parts.insert(parts.end(), all->begin(), all->end());
-    }
-    if (const auto* sections = std::get_if<std::vector<PlaneSection>>(&value)) {
-      for (const PlaneSection& section : *sections) parts.push_back(section.field);
-    }
-  }
+  for (const Value& value : field.construction()->arguments) append_fields(value, parts);
   return parts;
 }
 

@@ -5,6 +5,8 @@
 
 #include "sardf/error.hpp"
 #include "sardf/formula.hpp"
+#include "sardf/fractions.hpp"
+#include "sardf/scene_file.hpp"
 
 namespace sardf {
 
@@ -58,6 +60,27 @@ std::vector<std::array<double, N>> points_from(const ParameterInfo& p, const py:
   std::vector<std::array<double, N>> out;
   for (const py::handle& element : value) out.push_back(vector_from<N>(p, element));
   return out;
+}
+
+std::vector<double> numbers_from(const ParameterInfo& p, const py::handle& value) {
+  if (py::isinstance<py::str>(value) || !py::isinstance<py::iterable>(value)) wrong_type(p, value);
+  std::vector<double> out;
+  for (const py::handle& element : value) out.push_back(number_from(p, element));
+  return out;
+}
+
+PointGrid point_grid_from(const ParameterInfo& p, const py::handle& value) {
+  if (py::isinstance<py::str>(value) || !py::isinstance<py::iterable>(value)) wrong_type(p, value);
+  PointGrid out;
+  for (const py::handle& row : value) out.push_back(points_from<3>(p, row));
+  return out;
+}
+
+// The words of a scene file, with fields in place of their names.
+RulePointer rule_from(const py::handle& value) {
+  const auto named = py::module_::import("sardf._scene").attr("with_names")(value);
+  const auto pair = py::cast<std::pair<std::string, std::map<std::string, Field>>>(named);
+  return parse_value_rule(pair.first, pair.second).pointer();
 }
 
 Vec3 axis_from(const ParameterInfo& p, const py::handle& value) {
@@ -176,10 +199,21 @@ Value value_from(const ParameterInfo& p, const py::handle& value) {
       return vector_from<4>(p, value);
     case ParameterType::axis:
       return axis_from(p, value);
+    case ParameterType::numbers:
+      return numbers_from(p, value);
+    case ParameterType::point_grid:
+      return point_grid_from(p, value);
+    case ParameterType::rule:
+      return rule_from(value);
+    case ParameterType::path:
+      return FilePath{py::cast<std::string>(py::str(value)), ""};
     case ParameterType::points2:
       return points_from<2>(p, value);
     case ParameterType::points3:
       return points_from<3>(p, value);
+    case ParameterType::optional_field:
+      if (value.is_none()) return {};
+      [[fallthrough]];
     case ParameterType::field:
       return field_from(value, p.name);
     case ParameterType::fields:

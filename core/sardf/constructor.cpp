@@ -137,16 +137,25 @@ std::string type_name(ParameterType type) {
       return "4 numbers";
     case ParameterType::axis:
       return "\"x\", \"y\", \"z\" or 3 numbers";
+    case ParameterType::numbers:
+      return "a list of numbers";
     case ParameterType::points2:
       return "a list of points of 2 numbers";
     case ParameterType::points3:
       return "a list of points of 3 numbers";
+    case ParameterType::point_grid:
+      return "a list of rows of points of 3 numbers";
     case ParameterType::field:
+    case ParameterType::optional_field:
       return "a field";
     case ParameterType::fields:
       return "a list of fields";
     case ParameterType::sections:
       return "a list of objects such as {\"field\": \"contour\", \"z\": 2}";
+    case ParameterType::rule:
+      return "a rule that gives a value, such as {\"inverse_distance\": {...}}";
+    case ParameterType::path:
+      return "the name of a file";
     default:
       return "a blend";
   }

@@ -24,11 +24,16 @@ enum class ParameterType {
   optional_vector3,
   optional_vector4,
   axis,
+  numbers,
   points2,
   points3,
+  point_grid,
   field,
+  optional_field,
   fields,
   sections,
+  rule,
+  path,
   blend,
 };
 

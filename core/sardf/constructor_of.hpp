@@ -26,6 +26,11 @@ constexpr ParameterType parameter_type() {
     return ParameterType::optional_vector4;
   }
   if constexpr (std::is_same_v<Member, Axis>) return ParameterType::axis;
+  if constexpr (std::is_same_v<Member, std::vector<double>>) return ParameterType::numbers;
+  if constexpr (std::is_same_v<Member, PointGrid>) return ParameterType::point_grid;
+  if constexpr (std::is_same_v<Member, std::optional<Field>>) return ParameterType::optional_field;
+  if constexpr (std::is_same_v<Member, RulePointer>) return ParameterType::rule;
+  if constexpr (std::is_same_v<Member, FilePath>) return ParameterType::path;
   if constexpr (std::is_same_v<Member, std::vector<Vec2>>) return ParameterType::points2;
   if constexpr (std::is_same_v<Member, std::vector<Vec3>>) return ParameterType::points3;
   if constexpr (std::is_same_v<Member, Field>) return ParameterType::field;

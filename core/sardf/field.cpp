@@ -1,6 +1,7 @@
 #include "sardf/field.hpp"
 
 #include <charconv>
+#include <filesystem>
 
 #include "sardf/arithmetic.hpp"
 
@@ -40,6 +41,8 @@ std::string operand(const Field& field, std::map<std::string, Field>& names) {
 }
 
 }  // namespace
+
+std::string FilePath::full() const { return std::filesystem::path(folder) / text; }
 
 Field::Field(Expression value, Quality how_exact, std::shared_ptr<const Construction> how_made)
     : expression_(std::move(value)), quality_(how_exact), construction_(std::move(how_made)) {}

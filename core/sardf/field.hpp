@@ -53,10 +53,26 @@ struct PlaneSection {
   double z = 0;
 };
 
+/// A file that a scene names: as it was written, and the folder that it is relative to.
+struct FilePath {
+  std::string text, folder;
+  /// Where the file is.
+  std::string full() const;
+  friend bool operator==(const FilePath&, const FilePath&) = default;
+};
+
+/// Rows of points: the control points of a surface.
+using PointGrid = std::vector<std::vector<Vec3>>;
+
+struct Rule;
+/// A rule of fractions.hpp that gives one number.
+using RulePointer = std::shared_ptr<const Rule>;
+
 /// The value of one parameter. Axes are vectors here; monostate is an optional value not given.
 using Value = std::variant<std::monostate, bool, double, std::string, Vec2, Vec3,
                            std::array<double, 4>, std::vector<Vec2>, std::vector<Vec3>, Field,
-                           std::vector<Field>, std::vector<PlaneSection>, BlendPointer>;
+                           std::vector<Field>, std::vector<PlaneSection>, BlendPointer,
+                           std::vector<double>, PointGrid, FilePath, RulePointer>;
 
 struct Constructor;
 

@@ -20,14 +20,13 @@
 
 namespace sardf {
 
-struct Rule;
 struct RuleType;
 
 /// A rule with its arguments; empty by default. Cheap to copy.
 class Fractions {
  public:
   Fractions() = default;
-  explicit Fractions(std::shared_ptr<const Rule> rule) : rule_(std::move(rule)) {}
+  explicit Fractions(RulePointer rule) : rule_(std::move(rule)) {}
   /// One material alone: short for the rule `constant`.
   static Fractions material(const std::string& name);
   /// The value of an attribute: one field for each component.
@@ -35,9 +34,10 @@ class Fractions {
 
   explicit operator bool() const { return rule_ != nullptr; }
   const Rule& rule() const { return *rule_; }
+  const RulePointer& pointer() const { return rule_; }
 
  private:
-  std::shared_ptr<const Rule> rule_;
+  RulePointer rule_;
 };
 
 /// A number, or a field, for each of some materials, in the order given.

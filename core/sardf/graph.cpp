@@ -152,6 +152,8 @@ Expression call(const OperationPointer& operation, std::span<const Expression> i
   return Table::instance().intern(std::move(node));
 }
 
+Expression Operation::derivative(int, std::span<const Expression>) const { return nullptr; }
+
 std::vector<const Node*> topological_order(std::span<const Expression> roots) {
   std::vector<const Node*> order;
   std::unordered_map<const Node*, bool> done;

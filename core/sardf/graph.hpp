@@ -16,9 +16,8 @@
 
 namespace sardf {
 
-struct Node;
-/// A handle to an immutable node; never null in a graph. Equal expressions have equal pointers.
-using Expression = std::shared_ptr<const Node>;
+/// Expression (operation.hpp) is a handle to an immutable node; never null in a graph. Equal
+/// expressions have equal pointers.
 
 struct Node {
   enum class Type : uint8_t { constant, coordinate, operation };

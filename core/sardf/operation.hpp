@@ -54,6 +54,10 @@ struct Kernels {
   Partials partials = nullptr;
 };
 
+struct Node;
+/// A handle to an immutable node of a graph (graph.hpp).
+using Expression = std::shared_ptr<const Node>;
+
 class Operation {
  public:
   virtual ~Operation() = default;
@@ -81,8 +85,13 @@ class Operation {
   virtual bool is_distance() const = 0;
   virtual Join join() const = 0;
 
+  /// Whether there is a formula: a field that carries data (data_operation.hpp) has none.
+  virtual bool has_formula() const { return true; }
   /// Records the formula; the result's step is trace.result.
   virtual void record(Trace& trace) const = 0;
+  /// Of an operation without a formula, the partial derivative by input k as an expression of the
+  /// inputs; null where that is not known.
+  virtual Expression derivative(int k, std::span<const Expression> inputs) const;
 };
 
 using OperationPointer = std::shared_ptr<const Operation>;

@@ -25,6 +25,18 @@ std::string joined(const std::vector<Error>& all) {
   return text;
 }
 
+class ValueRuleReader : private RuleReader {
+ public:
+  explicit ValueRuleReader(const std::map<std::string, Field>& given) : RuleReader("", given) {}
+
+  Fractions read(const JsonValue& root, std::vector<Error> problems) {
+    errors = std::move(problems);
+    const RulePointer rule = value_rule({&root, ""});
+    if (!errors.empty()) throw SceneErrors(std::move(errors));
+    return Fractions(rule);
+  }
+};
+
 class SceneReader : private RuleReader {
  public:
   SceneReader(const std::string& file, const std::map<std::string, Field>& given)
@@ -305,6 +317,12 @@ SceneDescription parse_scene(const std::string& text, const std::string& file,
     throw SceneErrors(std::move(problems));
   }
   return SceneReader(file, fields).read(root, std::move(problems));
+}
+
+Fractions parse_value_rule(const std::string& text, const std::map<std::string, Field>& fields) {
+  std::vector<Error> problems;
+  const JsonValue root = parse_json(text, "", problems);
+  return ValueRuleReader(fields).read(root, std::move(problems));
 }
 
 SceneDescription read_scene(const std::string& path) {

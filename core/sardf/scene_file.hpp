@@ -23,6 +23,9 @@ SceneDescription read_scene(const std::string& path);
 SceneDescription parse_scene(const std::string& text, const std::string& file,
                              const std::map<std::string, Field>& fields = {});
 
+/// A rule that gives one number, as {"inverse_distance": {...}}, from text.
+Fractions parse_value_rule(const std::string& text, const std::map<std::string, Field>& fields);
+
 /// The scene as text that parse_scene reads back to equal expressions. Shared fields are named.
 std::string scene_text(const SceneDescription& scene);
 /// Writes a temporary file and renames it; "-" writes standard output.

@@ -23,6 +23,15 @@ JsonValue as_parameters(const Constructor& constructor, const JsonValue& value) 
   return object;
 }
 
+void collect_names(const JsonValue& value, std::vector<std::string>& names);
+
+// The names in every text of a rule, whose values are fields at any depth.
+void collect_all_names(const JsonValue& value, std::vector<std::string>& names) {
+  if (value.is(Type::string)) collect_names(value, names);
+  for (const JsonValue& element : value.elements) collect_all_names(element, names);
+  for (const JsonMember& member : value.members) collect_all_names(member.value, names);
+}
+
 // Every name that a field's text or object mentions, known or not.
 void collect_names(const JsonValue& value, std::vector<std::string>& names) {
   if (value.is(Type::string)) {
@@ -43,7 +52,10 @@ void collect_names(const JsonValue& value, std::vector<std::string>& names) {
   for (const ParameterInfo& info : constructor->parameters) {
     const JsonValue* argument = given.find(info.name);
     if (!argument) continue;
-    if (info.type == ParameterType::field) collect_names(*argument, names);
+    if (info.type == ParameterType::field || info.type == ParameterType::optional_field) {
+      collect_names(*argument, names);
+    }
+    if (info.type == ParameterType::rule) collect_all_names(*argument, names);
     if (info.type == ParameterType::fields) {
       for (const JsonValue& element : argument->elements) collect_names(element, names);
     }

@@ -4,6 +4,7 @@
 
 #include "sardf/constructor.hpp"
 #include "sardf/error.hpp"
+#include "sardf/field_parts.hpp"
 #include "sardf/formula.hpp"
 
 namespace sardf {
@@ -17,38 +18,6 @@ constexpr size_t longest_inline_formula = 60;
 // A short formula without names, such as a number: written where it is used.
 bool stands_alone(const Construction& made) {
   return !made.constructor && made.names.empty() && made.formula.size() <= longest_inline_formula;
-}
-
-void append_fields(const Value& value, std::vector<Field>& to) {
-  if (const auto* field = std::get_if<Field>(&value)) to.push_back(*field);
-  if (const auto* fields = std::get_if<std::vector<Field>>(&value)) {
-    to.insert(to.end(), fields->begin(), fields->end());
-  }
-  if (const auto* sections = std::get_if<std::vector<PlaneSection>>(&value)) {
-    for (const PlaneSection& section : *sections) to.push_back(section.field);
-  }
-}
-
-void append_fields(const Fractions& fractions, std::vector<Field>& to);
-
-void append_fields(const std::vector<RuleValue>& values, std::vector<Field>& to) {
-  for (const RuleValue& value : values) {
-    if (const auto* field = std::get_if<Field>(&value)) to.push_back(*field);
-    if (const auto* all = std::get_if<std::vector<Field>>(&value)) {
-      to.insert(to.end(), all->begin(), all->end());
-    }
-    if (const auto* functions = std::get_if<MaterialFunctions>(&value)) {
-      for (const auto& [name, field] : *functions) to.push_back(field);
-    }
-    if (const auto* nested = std::get_if<Fractions>(&value)) append_fields(*nested, to);
-    if (const auto* records = std::get_if<std::vector<Record>>(&value)) {
-      for (const Record& record : *records) append_fields(record.values, to);
-    }
-  }
-}
-
-void append_fields(const Fractions& fractions, std::vector<Field>& to) {
-  if (fractions) append_fields(fractions.rule().arguments, to);
 }
 
 std::vector<Field> fields_of(const SceneDescription& scene) {

@@ -50,6 +50,12 @@ Fractions RuleReader::value(const JsonPlace& place, size_t& components) {
   return is_rule ? rule(place, {&components}) : constant_value(place, components);
 }
 
+RulePointer RuleReader::value_rule(const JsonPlace& place) {
+  size_t components = 1;
+  const Fractions read = value(place, components);
+  return read ? read.pointer() : nullptr;
+}
+
 Fractions RuleReader::constant_value(const JsonPlace& place, size_t& components) {
   std::vector<Field> fields;
   if (place.value->is(Type::array)) {

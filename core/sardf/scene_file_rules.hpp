@@ -18,6 +18,9 @@ class RuleReader : public FieldReader {
   /// 0 while that is not known yet.
   Fractions value(const JsonPlace& place, size_t& components);
 
+ protected:
+  RulePointer value_rule(const JsonPlace& place) override;
+
  private:
   // What a rule is read for: components is nullptr where it gives fractions.
   struct Wanted {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "sardf/formula.hpp"
 
@@ -147,6 +148,36 @@ std::optional<std::vector<std::array<double, N>>> ValueReader::points(const Json
   return good ? std::optional(std::move(out)) : std::nullopt;
 }
 
+std::optional<std::vector<double>> ValueReader::number_list(const JsonPlace& place,
+                                                            const ParameterInfo& info) {
+  if (!list(place, type_name(info.type))) return std::nullopt;
+  std::vector<double> out;
+  bool good = true;
+  for (size_t i = 0; i < place.value->elements.size(); ++i) {
+    const auto a = any_number(place.element(i));
+    good = good && a;
+    out.push_back(a.value_or(0));
+  }
+  return good ? std::optional(std::move(out)) : std::nullopt;
+}
+
+std::optional<PointGrid> ValueReader::point_grid(const JsonPlace& place,
+                                                 const ParameterInfo& info) {
+  if (!list(place, type_name(info.type))) return std::nullopt;
+  PointGrid out;
+  bool good = true;
+  for (size_t i = 0; i < place.value->elements.size(); ++i) {
+    auto row = points<3>(place.element(i), info);
+    good = good && row;
+    out.push_back(std::move(row).value_or(std::vector<Vec3>{}));
+  }
+  return good ? std::optional(std::move(out)) : std::nullopt;
+}
+
+FilePath ValueReader::file_path(const std::string& name) const {
+  return {name, std::filesystem::path(file_).parent_path()};
+}
+
 std::optional<Vec3> ValueReader::vector3(const JsonPlace& place, const std::string& name) {
   ParameterInfo info;
   info.name = name;
@@ -283,13 +314,26 @@ std::optional<Value> ValueReader::argument(const JsonPlace& place, const Paramet
       }
       read = as_value(numbers<3>(place, type_name(info.type)));
       break;
+    case ParameterType::numbers:
+      read = as_value(number_list(place, info));
+      break;
+    case ParameterType::point_grid:
+      read = as_value(point_grid(place, info));
+      break;
+    case ParameterType::rule:
+      if (RulePointer rule = value_rule(place)) read = std::move(rule);
+      break;
+    case ParameterType::path:
+      if (const auto name = text(place)) read = file_path(*name);
+      break;
     case ParameterType::points2:
       read = as_value(points<2>(place, info));
       break;
     case ParameterType::points3:
       read = as_value(points<3>(place, info));
       break;
-    case ParameterType::field: {
+    case ParameterType::field:
+    case ParameterType::optional_field: {
       const Field one = field(place);
       if (one) read = one;
       break;

@@ -65,6 +65,8 @@ class ValueReader {
 
  protected:
   virtual Field field(const JsonPlace& place) = 0;
+  /// A rule that gives one number; null where it is wrong.
+  virtual RulePointer value_rule(const JsonPlace& place) = 0;
   /// Runs f; an Error it throws is reported at the place.
   template <class F>
   auto guarded(const JsonPlace& place, F f) -> std::optional<decltype(f())> {
@@ -88,6 +90,9 @@ class ValueReader {
   std::optional<Value> as_value(const std::optional<T>& read) {
     return read ? std::optional<Value>(*read) : std::nullopt;
   }
+  std::optional<std::vector<double>> number_list(const JsonPlace& place, const ParameterInfo& info);
+  std::optional<PointGrid> point_grid(const JsonPlace& place, const ParameterInfo& info);
+  FilePath file_path(const std::string& text) const;
   std::optional<std::vector<Field>> fields(const JsonPlace& place);
   std::optional<PlaneSection> section(const JsonPlace& place);
   std::optional<std::vector<PlaneSection>> sections(const JsonPlace& place,

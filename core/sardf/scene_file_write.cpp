@@ -1,5 +1,6 @@
 #include <cmath>
 #include <iostream>
+#include <utility>
 
 #include "sardf/constructor.hpp"
 #include "sardf/output_file.hpp"
@@ -11,10 +12,17 @@ namespace sardf {
 
 namespace {
 
-template <size_t N>
-JsonValue numbers(const std::array<double, N>& v) {
+template <class Numbers>
+JsonValue numbers(const Numbers& v) {
   JsonValue list = JsonValue::list();
   for (const double a : v) list.add(JsonValue::of(a));
+  return list;
+}
+
+template <class Points>
+JsonValue points(const Points& all) {
+  JsonValue list = JsonValue::list();
+  for (const auto& point : all) list.add(numbers(point));
   return list;
 }
 
@@ -52,7 +60,8 @@ bool is_default(const ParameterInfo& info, const Value& value) {
       [&](const auto& a) {
         using T = std::decay_t<decltype(a)>;
         if constexpr (std::is_same_v<T, Field> || std::is_same_v<T, std::vector<Field>> ||
-                      std::is_same_v<T, std::vector<PlaneSection>>) {
+                      std::is_same_v<T, std::vector<PlaneSection>> ||
+                      std::is_same_v<T, RulePointer>) {
           return false;
         } else if constexpr (std::is_same_v<T, BlendPointer>) {
           return a->name == std::get<T>(info.default_value)->name && a->parameters.empty();
@@ -168,9 +177,17 @@ class SceneWriter {
             return list;
           } else if constexpr (std::is_same_v<T, std::vector<Vec2>> ||
                                std::is_same_v<T, std::vector<Vec3>>) {
+            return points(a);
+          } else if constexpr (std::is_same_v<T, std::vector<double>>) {
+            return numbers(a);
+          } else if constexpr (std::is_same_v<T, PointGrid>) {
             JsonValue list = JsonValue::list();
-            for (const auto& point : a) list.add(numbers(point));
+            for (const auto& row : a) list.add(points(row));
             return list;
+          } else if constexpr (std::is_same_v<T, FilePath>) {
+            return JsonValue::of(a.text);
+          } else if constexpr (std::is_same_v<T, RulePointer>) {
+            return value_rule(a);
           } else if constexpr (std::is_same_v<T, std::monostate>) {
             return {};
           } else if constexpr (std::is_same_v<T, Vec3>) {
@@ -180,6 +197,14 @@ class SceneWriter {
           }
         },
         value);
+  }
+
+  // Inside a rule for values even where the scene's fractions are being written.
+  JsonValue value_rule(const RulePointer& rule) const {
+    const bool before = std::exchange(writing_values_, true);
+    JsonValue made = fractions(Fractions(rule));
+    writing_values_ = before;
+    return made;
   }
 
   JsonValue plane_section(const PlaneSection& section) const {
@@ -322,7 +347,7 @@ class SceneWriter {
 
   const SceneDescription& scene_;
   FieldNames names_;
-  bool writing_values_ = false;
+  mutable bool writing_values_ = false;
 };
 
 }  // namespace

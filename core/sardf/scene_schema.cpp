@@ -107,11 +107,20 @@ JsonValue of_type(ParameterType type, Range range, int at_least) {
       return tuple(number(range), 4);
     case ParameterType::axis:
       return reference("axis");
+    case ParameterType::numbers:
+      return list_of(number(range), at_least);
+    case ParameterType::point_grid:
+      return list_of(list_of(tuple(number(range), 3)), at_least);
+    case ParameterType::rule:
+      return reference("value");
+    case ParameterType::path:
+      return object({{"type", text("string")}});
     case ParameterType::points2:
       return list_of(tuple(number(range), 2), at_least);
     case ParameterType::points3:
       return list_of(tuple(number(range), 3), at_least);
     case ParameterType::field:
+    case ParameterType::optional_field:
       return reference("field");
     case ParameterType::fields:
       return list_of(reference("field"), at_least);

@@ -107,7 +107,10 @@ Field remade(const Field& field, const BlendPointer& blend, int depth) {
         if (!each) return {};
       }
     }
-    if (std::holds_alternative<std::vector<PlaneSection>>(value)) return {};
+    if (std::holds_alternative<std::vector<PlaneSection>>(value) ||
+        std::holds_alternative<RulePointer>(value)) {
+      return {};
+    }
   }
   return made->constructor->make(*made->constructor, std::move(arguments));
 }

@@ -105,6 +105,14 @@ Value random_value(Random& r, const ParameterInfo& info, int depth) {
       return random_of<std::vector<Vec2>>(r, p);
     case ParameterType::points3:
       return random_of<std::vector<Vec3>>(r, p);
+    case ParameterType::numbers: {
+      std::vector<double> all(size_t(p.at_least + r.below(5)));
+      for (double& a : all) a = r.number(p);
+      return all;
+    }
+    case ParameterType::optional_field:
+      if (r.chance(0.5)) return {};
+      [[fallthrough]];
     case ParameterType::field:
       return random_field(r, depth - 1);
     case ParameterType::fields: {

@@ -58,6 +58,12 @@ class _Names:
         return value
 
 
+def with_names(value):
+    """A rule as JSON text, and the fields that it names."""
+    names = _Names()
+    return json.dumps(names.plain(value)), names.fields
+
+
 def Scene(solid, materials=None, fractions=None, **rest):
     """A scene from Python: the keys of a scene file, with fields wherever a file names one.
 

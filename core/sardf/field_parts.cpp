@@ -1,0 +1,40 @@
+#include "sardf/field_parts.hpp"
+
+namespace sardf {
+
+namespace {
+
+void append_fields(const std::vector<RuleValue>& values, std::vector<Field>& to) {
+  for (const RuleValue& value : values) {
+    if (const auto* field = std::get_if<Field>(&value)) to.push_back(*field);
+    if (const auto* all = std::get_if<std::vector<Field>>(&value)) {
+      to.insert(to.end(), all->begin(), all->end());
+    }
+    if (const auto* functions = std::get_if<MaterialFunctions>(&value)) {
+      for (const auto& [name, field] : *functions) to.push_back(field);
+    }
+    if (const auto* nested = std::get_if<Fractions>(&value)) sardf::append_fields(*nested, to);
+    if (const auto* records = std::get_if<std::vector<Record>>(&value)) {
+      for (const Record& record : *records) append_fields(record.values, to);
+    }
+  }
+}
+
+}  // namespace
+
+void append_fields(const Value& value, std::vector<Field>& to) {
+  if (const auto* field = std::get_if<Field>(&value)) to.push_back(*field);
+  if (const auto* fields = std::get_if<std::vector<Field>>(&value)) {
+    to.insert(to.end(), fields->begin(), fields->end());
+  }
+  if (const auto* sections = std::get_if<std::vector<PlaneSection>>(&value)) {
+    for (const PlaneSection& section : *sections) to.push_back(section.field);
+  }
+  if (const auto* rule = std::get_if<RulePointer>(&value)) append_fields(Fractions(*rule), to);
+}
+
+void append_fields(const Fractions& fractions, std::vector<Field>& to) {
+  if (fractions) append_fields(fractions.rule().arguments, to);
+}
+
+}  // namespace sardf

@@ -32,6 +32,7 @@ from sardf.plot.segment_figure import draw_segment
 from sardf.plot.segments import Segment, segment
 from sardf.plot.surface_figure import draw_pictures, draw_surfaces
 from sardf.plot.surfaces import Surface, picture, surfaces
+from sardf.plot.vectors import Vectors
 
 __all__ = [
     "Failure",
@@ -42,6 +43,7 @@ __all__ = [
     "Section",
     "Segment",
     "Surface",
+    "Vectors",
     "blend_from",
     "draw_pictures",
     "draw_sections",

@@ -42,10 +42,17 @@ def _look(options) -> Look:
         bands=None if options.bands is None else bands_from(options.bands),
         lines=None if options.lines is None else lines_from(options.lines),
         stripes=options.stripes, label_lines=options.label_lines, outline=options.outline,
-        blank=options.blank, separate_scales=options.separate_scales, limits=options.limits,
-        colors=options.colors, scale_bar=options.scale_bar, columns=options.columns,
-        size=options.size, title=options.title,
+        blank=options.blank or _only_vectors(options), separate_scales=options.separate_scales,
+        limits=options.limits, colors=options.colors, scale_bar=options.scale_bar,
+        arrow_lengths=options.arrow_lengths, columns=options.columns, size=options.size,
+        title=options.title,
     )  # fmt: skip
+
+
+def _only_vectors(options) -> bool:
+    """Whether vectors are to be drawn and nothing behind them."""
+    behind = options.field or options.fraction or options.attribute or options.materials
+    return bool(options.arrows or options.streamlines) and not (behind or options.segment)
 
 
 def _plane(options):
@@ -56,7 +63,8 @@ def _make_section(scene, chosen, options):
     resolution = 400 if options.resolution is None else options.resolution
     return plot.section(
         scene, _plane(options), chosen, window=options.window, resolution=resolution,
-        only=options.only, outlines=options.outlines,
+        only=options.only, outlines=options.outlines, arrows=options.arrows,
+        streamlines=options.streamlines, arrow_count=options.arrow_count,
     )  # fmt: skip
 
 

@@ -3,6 +3,7 @@
 import argparse
 import re
 
+from sardf.plot.look import ARROW_LENGTHS
 from sardf.plot.sections import ONLY
 
 EXAMPLES = """\
@@ -13,6 +14,7 @@ examples:
   python -m sardf.plot scenes/cad_pins.json --section x=2 --materials --stripes 10 -o stripes.svg
   python -m sardf.plot scenes/cad_pins.json --segment "-5,2,0" "5,2,0" --section z=0 \\
       --fraction polymer copper --outline insert blend_region --blank -o graphs.png
+  python -m sardf.plot part.json --section z=0 --materials --arrows grain -o grain.svg
   python -m sardf.plot scenes/cad_pins_cut.json --isosurface --view "1,-2,1" -o surface.png
 
 exit codes: 0 done, 1 failed, 2 wrong input or usage
@@ -28,6 +30,8 @@ def parse(words: list[str]) -> argparse.Namespace:
         parser.error("choose what to draw: --section, --plane, --segment or --isosurface")
     if options.isosurface and (plane or options.segment):
         parser.error("--isosurface is drawn alone, without --section, --plane and --segment")
+    if not plane and (options.arrows or options.streamlines):
+        parser.error("--arrows and --streamlines are for --section or --plane")
     if not options.isosurface and options.through != "core":
         parser.error("--through is for --isosurface")
     return options
@@ -51,6 +55,7 @@ def make_parser() -> argparse.ArgumentParser:
     _add_places(parser.add_argument_group("where"))
     _add_quantities(parser.add_argument_group("what; several are drawn side by side"))
     _add_section_look(parser.add_argument_group("how sections are drawn"))
+    _add_vectors(parser.add_argument_group("vector attributes, drawn over sections"))
     _add_surfaces(parser.add_argument_group("surfaces"))
     _add_figure(parser.add_argument_group("the figure"))
     return parser
@@ -171,6 +176,28 @@ def _add_section_look(group) -> None:
     group.add_argument("--blank", action="store_true", help="outlines alone, no colours, no lines")
     group.add_argument("--no-scale-bar", dest="scale_bar", action="store_false",
                        help="without the bar of a round length")  # fmt: skip
+
+
+def _add_vectors(group) -> None:
+    which = group.add_mutually_exclusive_group()
+    which.add_argument(
+        "--arrows",
+        metavar="NAME",
+        help="arrows along the attribute, coloured by the share that points out of the plane; "
+        "without a choice of what to draw they stand alone. A CSV file has one row for each",
+    )
+    which.add_argument("--streamlines", metavar="NAME", help="lines along the attribute, likewise")
+    group.add_argument(
+        "--arrow-count",
+        type=int,
+        default=24,
+        metavar="N",
+        help="arrows along the longer side of the section; streamlines keep the distance that "
+        "these would have (%(default)s)",
+    )
+    group.add_argument("--arrow-lengths", choices=ARROW_LENGTHS, default=ARROW_LENGTHS[0],
+                       help="equal in space, or scaled by the vectors' lengths "
+                       "(%(default)s)")  # fmt: skip
 
 
 def _add_surfaces(group) -> None:

@@ -8,6 +8,8 @@ from sardf.plot.names import choose, fail
 from sardf.plot.numbers import brief, number, numbers
 
 NONE = "none"
+EQUAL, SCALED = "equal", "scaled"
+ARROW_LENGTHS = (EQUAL, SCALED)
 
 
 @dataclass(frozen=True)
@@ -25,6 +27,8 @@ class Look:
     limits: (low, high) of the colours; None for the range of what is shown.
     colors: a matplotlib colour map's name; None for what suits the quantity.
     scale_bar: draw a bar of a round length.
+    arrow_lengths: "equal": all arrows are equally long in space, and so appear shorter the more
+        they point out of the plane; "scaled": as long as the vectors, by one common factor.
     columns: panels side by side; None: all of one quantity, or up to four.
     size: (width, height) of the figure in inches; None: what the panels need.
     title: the figure's title; None: the scene's title and the plane; "": none.
@@ -40,6 +44,7 @@ class Look:
     limits: tuple | None = None
     colors: str | None = None
     scale_bar: bool = True
+    arrow_lengths: str = EQUAL
     columns: int | None = None
     size: tuple | None = None
     title: str | None = None
@@ -47,6 +52,7 @@ class Look:
     def __post_init__(self):
         if self.colors is not None:
             choose("colour map", self.colors, list(matplotlib.colormaps))
+        choose("length of arrows", self.arrow_lengths, ARROW_LENGTHS)
         if self.stripes < 0 or self.stripes == 1:
             fail(f"stripes is {self.stripes}; 2 or more, or 0 for none, is accepted")
         if self.columns is not None and self.columns < 1:

@@ -102,7 +102,7 @@ class Variant:
         """One quantity for a number, one for each component of a vector."""
         evaluate = choose("attribute", name, self.scene.attributes)
         shape = np.shape(evaluate(np.zeros((1, 3))))
-        label = name + _unit_of(self.scene, name)
+        label = name + unit_of(self.scene, name)
         if len(shape) == 1:
             return [
                 Quantity(
@@ -164,7 +164,8 @@ def material_colors(scene) -> np.ndarray:
     return np.array([linear_from(written.get(name, {}).get("color")) for name in scene.materials])
 
 
-def _unit_of(scene, attribute: str) -> str:
+def unit_of(scene, attribute: str) -> str:
+    """What follows an attribute's name in a label: its unit in brackets where it has one."""
     written = json.loads(scene.to_json())["attributes"][attribute]
     unit = written.get("unit", "") if isinstance(written, dict) else ""
     return f" ({unit})" if unit else ""

@@ -9,6 +9,7 @@ from sardf.plot.numbers import brief
 from sardf.plot.quantities import material_colors
 from sardf.plot.scales import scale_of
 from sardf.plot.sections import Section
+from sardf.plot.vector_figure import add_vector_bar, draw_vectors, vector_handles
 
 WIDEST = 14.0  # inches
 
@@ -61,7 +62,12 @@ def fill_panels(figure, axes, section: Section, look: Look) -> list:
             )  # fmt: skip
             bar.ax.minorticks_off()
             scales.append(scale)
+    with_vectors = vectors_of(section)
+    if with_vectors:  # beside the same axes as the last bar: the layout cannot nest them otherwise
+        add_vector_bar(figure, [axes[i] for i in members], with_vectors)
     for ax, panel in zip(axes, section.panels, strict=True):
+        if panel.vectors:
+            draw_vectors(ax, section, panel, look)
         parts.draw_outlines(ax, section, panel, look.outline)
         ax.set_aspect("equal")
         ax.set_xlim(section.across[0], section.across[-1])
@@ -71,6 +77,11 @@ def fill_panels(figure, axes, section: Section, look: Look) -> list:
     return scales
 
 
+def vectors_of(section: Section) -> list:
+    """The vectors of all panels that have some."""
+    return [panel.vectors for panel in section.panels if panel.vectors]
+
+
 def section_handles(section: Section, look: Look, scales) -> list:
     """The entries of a section's legend."""
     handles = []
@@ -78,6 +89,8 @@ def section_handles(section: Section, look: Look, scales) -> list:
         scene = section.scene
         handles += parts.material_handles(scene.materials, material_colors(scene))
     handles += parts.outline_handles(section.panels[0].outlines, look.outline)
+    if vectors_of(section):
+        handles += vector_handles(vectors_of(section), look)
     return handles + parts.line_handles(scales, section.scene.units)
 
 
@@ -106,7 +119,8 @@ def _size(section: Section, rows: int, columns: int) -> tuple[float, float]:
     width = min({1: 5.5, 2: 4.4}.get(columns, 3.6), (WIDEST - 1.5) / columns)
     width = min(width, 5.5 / aspect)
     width = max(width, 1.6)
-    return columns * (width + 0.15) + 1.7, rows * (width * aspect + 0.35) + 1.05
+    bar = 0.9 if vectors_of(section) else 0
+    return columns * (width + 0.15) + 1.7 + bar, rows * (width * aspect + 0.35) + 1.05
 
 
 def _title(section: Section) -> str:

@@ -8,6 +8,7 @@ from sardf.plot.names import choose, fail
 from sardf.plot.numbers import numbers
 from sardf.plot.planes import Plane, plane
 from sardf.plot.quantities import Quantity, Variant, quantities
+from sardf.plot.vectors import KINDS, Vectors, vectors_in
 
 ONLY = ("inside", "outside", "everywhere")
 FINEST = 8000
@@ -22,6 +23,7 @@ class Panel:
     solid: (rows, columns), the solid's field, with the quantity's blend.
     only: "inside", "outside" or "everywhere": which part is shown.
     stripes: (rows, columns), what stripes follow.
+    vectors: what is drawn over the values, on a grid of its own; or None.
     """
 
     quantity: Quantity
@@ -30,6 +32,7 @@ class Panel:
     only: str
     outlines: dict[str, np.ndarray]
     stripes: np.ndarray
+    vectors: Vectors | None = None
 
     @property
     def shown(self) -> np.ndarray:
@@ -62,8 +65,12 @@ class Section:
         return {panel.quantity.name: panel.shown for panel in self.panels}
 
     def table(self) -> tuple[list[str], np.ndarray]:
-        """Names of columns, and rows x, y, z, one value for each panel (three for colours)."""
-        return table(self.points, self.values)
+        """Names of columns, and rows x, y, z, one value for each panel (three for colours). With
+        vectors a row for each of these instead, see Vectors.table(); Error for several blends."""
+        vectors = {id(panel.vectors): panel.vectors for panel in self.panels if panel.vectors}
+        if len(vectors) > 1:
+            fail(f"the vectors of {len(vectors)} blends do not fit into one CSV file; choose one")
+        return vectors.popitem()[1].table() if vectors else table(self.points, self.values)
 
 
 def table(points, values: dict) -> tuple[list[str], np.ndarray]:
@@ -78,8 +85,9 @@ def table(points, values: dict) -> tuple[list[str], np.ndarray]:
 
 
 def section(
-    scene, at, chosen=None, *, window=None, resolution=400, only=None, outlines=(), **choices
-) -> Section:
+    scene, at, chosen=None, *, window=None, resolution=400, only=None, outlines=(), arrows=None,
+    streamlines=None, arrow_count=24, **choices,
+) -> Section:  # fmt: skip
     """Quantities on a grid in a plane.
 
     at: "y=0", a pair (point, normal) or a Plane.
@@ -90,6 +98,9 @@ def section(
     only: "inside", "outside" or "everywhere"; by default fractions, attributes and colours are
         shown inside the solid, fields everywhere.
     outlines: names of fields or formulas whose zero levels are wanted too.
+    arrows or streamlines: a vector attribute that is drawn over the panels, by default inside the
+        solid. arrow_count: arrows along the window's longer side, 1 to 400; streamlines keep the
+        distance that these would have.
     Raises Error for what does not exist and for a window without area.
     """
     at = plane(at)
@@ -104,7 +115,24 @@ def section(
     up = np.linspace(bottom, top, max(2, round((top - bottom) / step) + 1))
     points = at.points(*np.meshgrid(across, up))
     panels = [_panel(quantity, points, only, outlines) for quantity in chosen]
-    return Section(scene, at, across, up, points, panels)
+    made = Section(scene, at, across, up, points, panels)
+    add_vectors(made, arrows, streamlines, arrow_count, only or "inside")
+    return made
+
+
+def add_vectors(made: Section, arrows, streamlines, count: int, only: str) -> None:
+    """Gives every panel the vectors of its scene; panels of the same scene share them."""
+    asked = {kind: name for kind, name in zip(KINDS, (arrows, streamlines), strict=True) if name}
+    if len(asked) > 1:
+        fail("arrows and streamlines are drawn one at a time; choose one of them")
+    window = made.across[0], made.across[-1], made.up[0], made.up[-1]
+    for kind, name in asked.items():
+        found = {}
+        for panel in made.panels:
+            scene = panel.quantity.scene
+            if id(scene) not in found:
+                found[id(scene)] = vectors_in(scene, name, kind, made.plane, window, count, only)
+            panel.vectors = found[id(scene)]
 
 
 def _panel(quantity: Quantity, points, only, outlines) -> Panel:

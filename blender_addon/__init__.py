@@ -6,7 +6,8 @@ camera as arrays, and the modules here turn them into Blender data. In the order
 
 core         find and import the compiled module for this Python
 job          scene file -> mesh, textures and fractions, as arrays (no bpy; runs in a worker thread)
-mesh_data    arrays -> mesh with UVs, custom normals and one attribute for each material
+mesh_data    arrays -> mesh with UVs, custom normals, an attribute for each material and for each of
+             the scene's attributes
 images       arrays -> float images with the right colour space, packed
 material     images -> one Principled material, and the plain materials of the comparison looks
 camera       the core's camera dictionary -> camera object

@@ -60,6 +60,9 @@ def parse(arguments):
     parser.add_argument("--width", type=whole(8, 16384), default=640, help="pixels (%(default)s)")
     parser.add_argument("--height", type=whole(8, 16384), default=480, help="pixels (%(default)s)")
     parser.add_argument("--camera", metavar="JSON", help="a camera.json to use, not our framing")
+    parser.add_argument("--tangent", default="", metavar="NAME",
+                        help="vector attribute along which metal is brushed; default: "
+                        "grain_direction, where the scene has it")  # fmt: skip
     parser.add_argument("--section", action=flag, default=True, help="cut the part open")
     parser.add_argument("--look", type=looks, default=["shaded"], metavar="LOOK[,LOOK]",
                         help="shaded, flat, normals (shaded)")  # fmt: skip

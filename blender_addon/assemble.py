@@ -45,6 +45,7 @@ def place(scene, part, built):
     material's other nodes; mesh and images are replaced.
     """
     mesh = mesh_data.build(part.name, part.mesh, part.fractions, part.scene.materials)
+    names = mesh_data.set_attributes(mesh, part.attributes)
     old_images = [i for i in bpy.data.images if i.get(SOURCE) == part.source]
     read = {channel: image for channel, image in built.items() if channel in material.SOCKETS}
     item = find(scene, part.source)
@@ -58,6 +59,7 @@ def place(scene, part, built):
     for each in kept or [material.build(part.name, read)]:
         mesh.materials.append(each)
         material.assign_images(each, read, glows(part))
+        material.set_tangent(each, names.get(part.tangent, ""))
     item.data = mesh
     _forget(old_mesh, old_images)
     mesh.name = part.name  # it was taken while the earlier mesh was there

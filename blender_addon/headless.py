@@ -52,7 +52,9 @@ def make_part(options, signals):
     except core.MissingCore as error:
         raise Stop(FAILED, str(error)) from error
     wanted = job.CHANNELS if options.keep_blend or "shaded" in options.look else ("base_color",)
-    request = job.Request(options.scene, options.resolution, options.size, options.section, wanted)
+    request = job.Request(
+        options.scene, options.resolution, options.size, options.section, wanted, options.tangent
+    )
     try:
         given = camera.read(options.camera) if options.camera else None
         part = job.make_part(sardf, request, progress=lambda share: not signals.name)

@@ -1,29 +1,39 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """From a scene file to the arrays that Blender needs; no bpy here, so that a thread may run it."""
 
+import difflib
 import threading
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 CHANNELS = ("base_color", "roughness", "metallic", "emission", "fractions")
+GRAIN = "grain_direction"  # the attribute that directs metal's reflections unless one is named
 MESH_SHARE = 0.4  # of the time, for the progress bar: meshing took 0.2 to 0.6 of it on our scenes
 
 
 @dataclass(frozen=True)
 class Request:
-    """What to make: cells along the longest side, texels along a texture's side, cut or whole."""
+    """What to make: cells along the longest side, texels along a texture's side, cut or whole.
+
+    `tangent`: the attribute along which metal is brushed, "" for GRAIN in a scene that has it.
+    """
 
     path: str
     resolution: int = 128
     size: int = 2048
     sections: bool = True
     channels: tuple = CHANNELS
+    tangent: str = ""
 
 
 @dataclass
 class Part:
-    """The made arrays: `mesh` and `maps` as sardf returns them, fractions (vertices, materials)."""
+    """The made arrays: `mesh` and `maps` as sardf returns them, fractions (vertices, materials).
+
+    `attributes`: {name: (vertices,) or (vertices, components)}; `tangent`: the one along which
+    metal is brushed, or "".
+    """
 
     name: str
     source: str
@@ -31,6 +41,8 @@ class Part:
     mesh: Any
     maps: dict
     fractions: Any
+    attributes: dict
+    tangent: str
 
 
 def make_part(sardf, request, progress=None):
@@ -46,6 +58,7 @@ def make_part(sardf, request, progress=None):
         return lambda share: progress(start + (stop - start) * share)
 
     scene = sardf.load(request.path)
+    tangent = tangent_of(sardf, scene, request.tangent)
     mesh = scene.mesh(
         resolution=request.resolution,
         sections=request.sections,
@@ -60,8 +73,40 @@ def make_part(sardf, request, progress=None):
         progress=between(MESH_SHARE, 1.0),
     )
     name = scene.title or Path(request.path).stem
-    fractions = scene.fractions(mesh.vertices)
-    return Part(name, str(request.path), scene, mesh, maps, fractions)
+    vertices = mesh.vertices
+    attributes = {name: evaluate(vertices) for name, evaluate in scene.attributes.items()}
+    return Part(
+        name, str(request.path), scene, mesh, maps, scene.fractions(vertices), attributes, tangent
+    )
+
+
+def tangent_of(sardf, scene, name):
+    """The checked name of the attribute along which metal is brushed, or "" for none.
+
+    A name must be that of an attribute with 3 components: raises sardf.Error. "" stands for GRAIN
+    where the scene has such a vector of that name.
+    """
+    known = scene.attributes
+    if not name:
+        return GRAIN if GRAIN in known and components(known[GRAIN]) == 3 else ""
+    if name not in known:
+        accepted = f"accepted are {', '.join(known)}" if known else "the scene has none"
+        near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+        hint = f"; did you mean '{near[0]}'?" if near else ""
+        raise sardf.Error(f"there is no attribute '{name}'; {accepted}{hint}")
+    count = components(known[name])
+    if count != 3:
+        found = "a number" if count == 1 else f"a vector of {count} components"
+        raise sardf.Error(
+            f"the attribute '{name}' is {found}; metal is brushed along a vector of 3 components"
+        )
+    return name
+
+
+def components(evaluate):
+    """How many numbers an attribute gives at a point."""
+    values = evaluate([(0.0, 0.0, 0.0)])
+    return 1 if values.ndim == 1 else values.shape[1]
 
 
 class Job:

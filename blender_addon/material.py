@@ -12,6 +12,12 @@ SOCKETS = {
     "metallic": ("Metallic",),
     "emission": ("Emission Color", "Emission"),
 }
+# What set_tangent makes: from an attribute to the direction of Principled's anisotropy.
+TANGENT_NODES = ("tangent attribute", "tangent in world", "tangent", "anisotropic")
+ANISOTROPIC = 0.8  # of pure metal
+# Of a full turn: Principled stretches reflections along the tangent, and brushed metal does across
+# its scratches.
+ACROSS = 0.25
 
 
 def use_nodes(owner):
@@ -58,6 +64,48 @@ def assign_images(material, images, glows):
             strength.default_value = 1.0
 
 
+def set_tangent(material, attribute):
+    """Let metal reflect as if brushed along a vector attribute of the mesh; "" ends that.
+
+    The nodes are made once, where Principled's Tangent is free and a metallic image is read; then
+    only the attribute's name changes, so that what the user did to them stays.
+    """
+    tree = material.node_tree
+    if not attribute:
+        for name in map(node_name, TANGENT_NODES):
+            if name in tree.nodes:
+                tree.nodes.remove(tree.nodes[name])
+        return
+    if node_name(TANGENT_NODES[0]) not in tree.nodes:
+        shader = next((n for n in tree.nodes if n.type == "BSDF_PRINCIPLED"), None)
+        metallic = tree.nodes.get(node_name("metallic"))
+        if shader is None or metallic is None or shader.inputs["Tangent"].is_linked:
+            return
+        _add_tangent(tree, shader, metallic)
+    tree.nodes[node_name(TANGENT_NODES[0])].attribute_name = attribute
+
+
+def _add_tangent(tree, shader, metallic):
+    """Attribute -> from the object's axes to the world's -> unit length -> Tangent, and
+    metallic * ANISOTROPIC -> Anisotropic."""
+    kinds = ("Attribute", "VectorTransform", "VectorMath", "Math")
+    source, turned, unit, strength = (
+        _node(tree, f"ShaderNode{kind}", name, (-900 + 200 * place, -900))
+        for place, (kind, name) in enumerate(zip(kinds, TANGENT_NODES, strict=True))
+    )
+    source.attribute_type = "GEOMETRY"
+    turned.vector_type, turned.convert_from, turned.convert_to = "VECTOR", "OBJECT", "WORLD"
+    unit.operation = "NORMALIZE"
+    strength.operation = "MULTIPLY"
+    strength.inputs[1].default_value = ANISOTROPIC
+    tree.links.new(source.outputs["Vector"], turned.inputs["Vector"])
+    tree.links.new(turned.outputs["Vector"], unit.inputs[0])
+    tree.links.new(unit.outputs["Vector"], shader.inputs["Tangent"])
+    tree.links.new(metallic.outputs["Color"], strength.inputs[0])
+    tree.links.new(strength.outputs["Value"], shader.inputs["Anisotropic"])
+    shader.inputs["Anisotropic Rotation"].default_value = ACROSS
+
+
 def build_flat(image):
     """Emission of the base colour alone: what the picture shows is the texture's value."""
     tree, output, material = _bare("sardf flat")
@@ -93,9 +141,14 @@ def _emission(tree, color):
 
 
 def _image_node(tree, channel, location):
-    node = tree.nodes.new("ShaderNodeTexImage")
-    node.name = node.label = node_name(channel)
-    node.location = location
+    node = _node(tree, "ShaderNodeTexImage", channel, location)
     node.interpolation = "Linear"
     node.extension = "EXTEND"
+    return node
+
+
+def _node(tree, kind, name, location):
+    node = tree.nodes.new(kind)
+    node.name = node.label = node_name(name)
+    node.location = location
     return node

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Arrays to a Blender mesh with UVs, custom normals and one point attribute for each material."""
+"""Arrays to a Blender mesh with UVs, custom normals, and materials and attributes at its points."""
 
 import math
 
@@ -55,6 +55,34 @@ def set_fractions(data, fractions, materials):
     for column, material in enumerate(materials):
         attribute = data.attributes.new(name=material, type="FLOAT", domain="POINT")
         attribute.data.foreach_set("value", _floats(fractions[:, column]))
+
+
+def set_attributes(data, attributes):
+    """Point attributes from {name: (V,) or (V, components)}; returns {name: the name it got}.
+
+    Numbers become FLOAT, vectors of 2 or 3 components FLOAT_VECTOR, where a missing z is 0, and
+    longer ones a FLOAT for each component: name_1, name_2, ... What is not finite becomes 0.
+    Blender appends .001 to a name that the mesh has already, such as that of a material.
+    """
+    names = {}
+    for name, values in attributes.items():
+        values = np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0)
+        if values.ndim == 1:
+            names[name] = _add(data, name, "FLOAT", "value", values)
+        elif values.shape[1] <= 3:
+            vectors = np.zeros((len(values), 3))
+            vectors[:, : values.shape[1]] = values
+            names[name] = _add(data, name, "FLOAT_VECTOR", "vector", vectors)
+        else:
+            for column in range(values.shape[1]):
+                _add(data, f"{name}_{column + 1}", "FLOAT", "value", values[:, column])
+    return names
+
+
+def _add(data, name, kind, member, values):
+    attribute = data.attributes.new(name=name, type=kind, domain="POINT")
+    attribute.data.foreach_set(member, _floats(values))
+    return attribute.name
 
 
 def _floats(array):

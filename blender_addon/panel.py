@@ -30,6 +30,7 @@ class SARDF_PT_main(bpy.types.Panel):
         column.prop(settings, "resolution")
         column.prop(settings, "size")
         column.prop(settings, "sections")
+        column.prop(settings, "tangent_attribute")
         column.prop(settings, "set_units")
         self._draw_bake()
         column = layout.column()

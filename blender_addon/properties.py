@@ -44,11 +44,13 @@ def read_summary(settings):
         _summaries[path] = Summary(error=str(error))
     else:
         count = len(scene.materials)
+        attributes = ", ".join(scene.attributes)
         _summaries[path] = Summary(
             lines=(
                 scene.title or "untitled",
                 f"{count} material{'' if count == 1 else 's'}: {', '.join(scene.materials)}",
                 f"unit: {scene.units}; sections: {scene.section_count}",
+                *([f"attributes: {attributes}"] if attributes else []),
             )
         )
     return _summaries[path]
@@ -61,6 +63,7 @@ def request(settings):
         resolution=settings.resolution,
         size=int(settings.size),
         sections=settings.sections,
+        tangent=settings.tangent_attribute,
     )
 
 
@@ -94,6 +97,13 @@ class SardfSettings(bpy.types.PropertyGroup):
         name="Cut Open",
         description="Remove what the scene file's sections remove",
         default=True,
+    )
+    tangent_attribute: bpy.props.StringProperty(
+        name="Brushed Along",
+        description=(
+            "The vector attribute of the scene file along which metal is brushed; if empty, "
+            "grain_direction where the file has it"
+        ),
     )
     set_units: bpy.props.BoolProperty(
         name="File's Unit",

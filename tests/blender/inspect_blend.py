@@ -76,6 +76,8 @@ def main(folder, result_file):
     for name in facts["attributes"]:
         if mesh.attributes[name].data_type == "FLOAT":
             arrays[f"attribute {name}"] = read(mesh.attributes[name].data, "value", 1)
+        elif mesh.attributes[name].data_type == "FLOAT_VECTOR":
+            arrays[f"attribute {name}"] = read(mesh.attributes[name].data, "vector", 3)
     for node in nodes:
         arrays[f"packed {node.name}"] = pixels(node.image)
     for path in [*folder.glob("*.exr"), *folder.glob("textures/*.exr"), *folder.glob("*.png")]:

@@ -179,7 +179,7 @@ def slow_core(entered):
             time.sleep(0)
         raise Cancelled
 
-    scene = SimpleNamespace(mesh=mesh)
+    scene = SimpleNamespace(mesh=mesh, attributes={})
     return SimpleNamespace(load=lambda path: scene, Cancelled=Cancelled)
 
 

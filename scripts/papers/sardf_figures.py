@@ -1,6 +1,6 @@
 """The figures of Fayolle et al. 2004: what each shows, and how ours is drawn."""
 
-from dataclasses import dataclass
+from papers.paper import Figure, Part
 
 CORNER = "docs/papers/scenes/corner.json --section z=0"
 PLATE = "scenes/cad_plate.json --section z=0"
@@ -8,37 +8,6 @@ SLICE = "scenes/tooth_slice.json --section z=0"
 PINS = "scenes/cad_pins.json"
 ZONES = "--outline growing_arcs fixed_arcs --no-outline"
 BLENDS = "--blend sardf=0.5 sardf_c1=0.5 min_max r_function smooth=0.5"
-
-
-@dataclass(frozen=True)
-class Figure:
-    """One figure of the paper. shows: what it shows, in our words. plots: the arguments of
-    sardf.plot for each of our pictures. chosen: what is not printed and what we chose. text: more,
-    as Markdown, after the pictures."""
-
-    name: str
-    shows: str
-    plots: tuple[str, ...] = ()
-    chosen: str = ""
-    text: str = ""
-
-    @property
-    def images(self) -> list[str]:
-        """The names of the pictures' files."""
-        word, _, number = self.name.partition(" ")
-        stem = f"sardf_fig{int(number):02}" if number else f"sardf_{word}_"
-        letters = "abcdef" if len(self.plots) > 1 else [""]
-        return [f"{stem}{letter}.png" for letter in letters[: len(self.plots)]]
-
-
-@dataclass(frozen=True)
-class Part:
-    """A part of the paper with its figures."""
-
-    title: str
-    words: str
-    figures: tuple[Figure, ...]
-
 
 OPERATIONS = Part(
     "Section 2: the operations",
@@ -405,8 +374,3 @@ PARTS = {
     "cad_3d": CAD_3D,
     "tooth": TOOTH,
 }
-EXTRA = (CREASE, TREE_ERROR)
-
-
-def every_figure() -> list[Figure]:
-    return [figure for part in PARTS.values() for figure in part.figures] + list(EXTRA)

@@ -8,14 +8,11 @@ import numpy as np
 import sardf
 
 from papers import sardf_tables as tables
-from papers.page import paragraph, pictures, table
+from papers.page import table
+from papers.paper import FOLDER, ROOT, Drawing, Paper
 from papers.sardf_figures import CREASE, PARTS, TREE_ERROR
 
-ROOT = Path(__file__).resolve().parents[2]
-FOLDER = ROOT / "docs/papers"
-PAGE = FOLDER / "sardf.md"
 CORNER = FOLDER / "scenes/corner.json"
-WORDS = Path(__file__).with_name("sardf_words.txt")
 MEASURED = FOLDER / "sardf_accuracy.json"
 
 ACCURACY = [
@@ -34,25 +31,23 @@ BOUNDED = (
 )
 
 
-def generated() -> str:
-    """The whole page."""
+def values() -> dict[str, str]:
+    """What the page says besides its figures."""
     ours = tables.OURS_WRITTEN if (FOLDER / "table1.md").exists() else tables.OURS_TO_MEASURE
-    values = {name: part_text(part) for name, part in PARTS.items()}
-    return WORDS.read_text().format(
-        **values,
+    return {
         **exactness(),
-        times=times_table(),
-        our_times=ours,
-        jumps=jumps_table(),
-        crease_pictures=pictures_of(CREASE),
-        error_pictures=pictures_of(TREE_ERROR),
-        bounds=bounds_table(),
-        accuracy=accuracy_table(),
-        commands="\n".join(f"$ python -m sardf.accuracy {words}" for words in ACCURACY),
-        map=map_text(),
-        typos=table(("place", "printed", "read as", "because"), tables.TYPOS),
-        chosen=table(("section", "not printed", "chosen here"), tables.CHOSEN),
-    )
+        "times": times_table(),
+        "our_times": ours,
+        "jumps": jumps_table(),
+        "crease_pictures": PAPER.pictures_of(CREASE, CREASE.shows),
+        "error_pictures": PAPER.pictures_of(TREE_ERROR, TREE_ERROR.shows),
+        "bounds": bounds_table(),
+        "accuracy": accuracy_table(),
+        "commands": "\n".join(f"$ python -m sardf.accuracy {words}" for words in ACCURACY),
+        "map": map_text(),
+        "typos": table(("place", "printed", "read as", "because"), tables.TYPOS),
+        "chosen": table(("section", "not printed", "chosen here"), tables.CHOSEN),
+    }
 
 
 def map_text() -> str:
@@ -61,27 +56,6 @@ def map_text() -> str:
         f"![Where the two ellipsoids' field differs from the true distance](images/{image})\n\n"
         f"```console\n$ python -m sardf.accuracy {words} -o {image}\n```"
     )
-
-
-def pictures_of(figure) -> str:
-    return pictures(figure.images, figure.shows, figure.plots)
-
-
-def part_text(part) -> str:
-    blocks = [f"## {part.title}", paragraph(part.words)]
-    blocks += [figure_text(figure) for figure in part.figures]
-    return "\n\n".join(blocks)
-
-
-def figure_text(figure) -> str:
-    blocks = [
-        f"### {figure.name}",
-        paragraph(f"**In the paper:** {figure.shows}"),
-        pictures(figure.images, f"{figure.name}, drawn by sardf", figure.plots),
-        figure.text.strip(),
-        paragraph(f"**Not printed, chosen here:** {figure.chosen}"),
-    ]
-    return "\n\n".join(block for block in blocks if block)
 
 
 def times_table() -> str:
@@ -158,3 +132,10 @@ def accuracy_table() -> str:
                 f"{found['reference']['max_error']:.1e}",
             ))  # fmt: skip
     return table(("scene and blend", "side", "mean (mm)", "largest (mm)", "mesh (mm)"), rows)
+
+
+_image, _words = MAP
+PAPER = Paper(
+    "sardf", PARTS, extra=(CREASE, TREE_ERROR), values=values,
+    others=(Drawing(_image, "sardf.accuracy", [*_words.split(), "-o", _image]),),
+)  # fmt: skip

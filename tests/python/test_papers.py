@@ -1,5 +1,6 @@
-"""The page of the paper is what scripts/make_papers writes, and its commands and numbers hold."""
+"""The pages of the papers are what scripts/make_papers writes; their commands and numbers hold."""
 
+import dataclasses
 import json
 import math
 import re
@@ -12,25 +13,32 @@ import numpy as np
 import pytest
 import sardf
 from PIL import Image
+from plot_scenes import csv_of, points_of
 from repository import ROOT
 from sardf.accuracy import __main__ as accuracy
 from sardf.plot.__main__ import main as plot
 
 sys.path.insert(0, str(ROOT / "scripts"))
 
-from papers import sardf_page, sardf_tables
-from papers.page import words_of
-from papers.sardf_figures import every_figure
+from papers import biswas_page, biswas_tables, sardf_page, sardf_tables
 
-PAGE = ROOT / "docs/papers/sardf.md"
-TEXT = PAGE.read_text()
-IMAGES = PAGE.parent / "images"
-TYPOS = 19
+FOLDER = ROOT / "docs/papers"
+IMAGES = FOLDER / "images"
+PAPERS = [sardf_page.PAPER, biswas_page.PAPER]
+TEXTS = {paper.name: (FOLDER / f"{paper.name}.md").read_text() for paper in PAPERS}
+# The figures of each paper that its page has.
+FIGURES = {"sardf": range(1, 31), "biswas": (1, 3)}
+TABLES = {"sardf": ["Table 1"], "biswas": []}
+WITHOUT_PICTURE = [("sardf", "Figure 13"), ("sardf", "Table 1")]
+SHOWN = r"!\[[^\]]+\]\(images/([^)]+)\)"
+TYPOS, READINGS = 19, 15
+
+every_paper = pytest.mark.parametrize("paper", PAPERS, ids=lambda paper: paper.name)
 
 
-def commands() -> list[list[str]]:
-    """The words of each command on the page."""
-    blocks = re.findall(r"^```console\n(.*?)^```", TEXT, re.MULTILINE | re.DOTALL)
+def commands(text: str) -> list[list[str]]:
+    """The words of each command on a page."""
+    blocks = re.findall(r"^```console\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
     lines = "".join(blocks).replace("\\\n", " ").splitlines()
     return [shlex.split(line.removeprefix("$ ")) for line in lines]
 
@@ -40,17 +48,18 @@ def arguments_of(module: str):
     start = ["python", "-m", module]
     return [
         pytest.param(words[3:], id=words[-1] if "-o" in words else " ".join(words[3:]))
-        for words in commands()
+        for text in TEXTS.values()
+        for words in commands(text)
         if words[:3] == start
     ]
 
 
-def section_of(title: str) -> str:
+def section_of(page: str, title: str) -> str:
     """The text under a heading, up to the next of the same depth."""
-    depth = title.split()[0]
-    start = TEXT.index(f"{title}\n")
-    end = TEXT.find(f"\n{depth} ", start + 1)
-    return TEXT[start : end if end > 0 else None]
+    depth, text = title.split()[0], TEXTS[page]
+    start = text.index(f"{title}\n")
+    end = text.find(f"\n{depth} ", start + 1)
+    return text[start : end if end > 0 else None]
 
 
 def rows_of(text: str) -> list[list[str]]:
@@ -59,40 +68,42 @@ def rows_of(text: str) -> list[list[str]]:
     return rows[2:]
 
 
-def test_page_is_what_the_generator_writes():
+def test_pages_are_what_the_generator_writes():
     made = ROOT / "scripts/make_papers"
     done = subprocess.run([sys.executable, made, "--check"], capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert sardf_page.generated() == TEXT
+    assert {paper.name: paper.generated() for paper in PAPERS} == TEXTS
 
 
-def test_check_finds_a_changed_page(monkeypatch, tmp_path):
+@every_paper
+def test_check_finds_a_changed_page(paper, tmp_path):
     """Without its pictures and with another word on the page."""
-    text = (ROOT / "scripts/make_papers").read_text()
     names = {"__name__": "make_papers", "__doc__": "Text."}
-    exec(compile(text, "make_papers", "exec"), names)
-    page = tmp_path / "sardf.md"
-    page.write_text(TEXT.replace("Level", "level", 1))
-    (tmp_path / "sardf_of_nothing.png").touch()
-    monkeypatch.setattr(sardf_page, "PAGE", page)
-    monkeypatch.setitem(names, "IMAGES", tmp_path)
+    exec(compile((ROOT / "scripts/make_papers").read_text(), "make_papers", "exec"), names)
+    (tmp_path / f"{paper.name}.md").write_text(TEXTS[paper.name].replace("Every", "every", 1))
+    (tmp_path / "images").mkdir()
+    (tmp_path / "images/of_nothing.png").touch()
+    names["PAPERS"] = (dataclasses.replace(paper, folder=tmp_path),)
     said = names["out_of_date"]()
-    assert {"sardf_fig01.png is missing", "sardf.md is out of date"} <= set(said)
-    assert "sardf_of_nothing.png belongs to no figure" in said
+    first = paper.drawings()[0].image
+    assert {f"{first} is missing", f"{paper.name}.md is out of date"} <= set(said)
+    assert "of_nothing.png belongs to no figure" in said
 
 
-def test_every_figure_of_the_paper_is_there():
-    headings = re.findall(r"^### (.*)$", TEXT, re.MULTILINE)
-    wanted = [f"Figure {number}" for number in range(1, 31)] + ["Table 1"]
-    assert sorted(headings) == sorted(wanted)
-    for heading in wanted:
-        text = section_of(f"### {heading}").split("\n## ")[0]
+@every_paper
+def test_every_figure_of_the_paper_is_there(paper):
+    headings = re.findall(r"^### (.*)$", TEXTS[paper.name], re.MULTILINE)
+    wanted = [f"Figure {number}" for number in FIGURES[paper.name]]
+    assert [heading for heading in headings if heading.startswith("Figure")] == wanted
+    assert [heading for heading in headings if heading not in wanted] == TABLES[paper.name]
+    for heading in headings:
+        text = section_of(paper.name, f"### {heading}").split("\n## ")[0]
         assert "**In the paper:**" in text
-        assert "](images/" in text or heading in ("Figure 13", "Table 1")
+        assert "](images/" in text or (paper.name, heading) in WITHOUT_PICTURE
 
 
 def test_every_picture_exists_and_is_shown():
-    shown = re.findall(r"!\[[^\]]+\]\(images/([^)]+)\)", TEXT)
+    shown = [name for text in TEXTS.values() for name in re.findall(SHOWN, text)]
     there = [path.name for path in IMAGES.iterdir()]
     assert sorted(shown) == sorted(there)
     sizes = [(IMAGES / name).stat().st_size for name in there]
@@ -104,15 +115,13 @@ def test_every_picture_exists_and_is_shown():
         assert pixels.std() > 5
 
 
-def test_pictures_and_commands_on_the_page_belong_together():
-    written = [words[-1] for words in commands() if words[-2:-1] == ["-o"]]
-    assert written == re.findall(r"\(images/([^)]+)\)", TEXT)
-    wanted = [
-        words_of(plot_words, image)
-        for figure in every_figure()
-        for image, plot_words in zip(figure.images, figure.plots, strict=True)
-    ]
-    assert [words[3:] for words in commands() if words[2:3] == ["sardf.plot"]] == wanted
+@every_paper
+def test_pictures_and_commands_on_the_page_belong_together(paper):
+    typed = [w for w in commands(TEXTS[paper.name]) if w[-2:-1] == ["-o"]]
+    assert [words[-1] for words in typed] == re.findall(SHOWN, TEXTS[paper.name])
+    wanted = [["python", "-m", drawn.module, *drawn.words] for drawn in paper.drawings()]
+    assert typed == wanted
+    assert all(drawn.image.startswith(f"{paper.name}_") for drawn in paper.drawings())
 
 
 def at_lower_cost(words, output) -> list[str]:
@@ -178,7 +187,7 @@ def test_commands_for_accuracy_run(capsys, tmp_path, monkeypatch):
 @pytest.mark.long
 def test_accuracy_on_the_page_is_measured(tmp_path, monkeypatch):
     monkeypatch.chdir(ROOT)
-    kept = json.loads((PAGE.parent / "sardf_accuracy.json").read_text())
+    kept = json.loads((FOLDER / "sardf_accuracy.json").read_text())
     for words, found in kept.items():
         assert accuracy.main([*words.split(), "-o", str(tmp_path / "table.json")]) == 0
         again = json.loads((tmp_path / "table.json").read_text())
@@ -190,7 +199,7 @@ def test_accuracy_on_the_page_is_measured(tmp_path, monkeypatch):
 
 def test_what_the_page_says_about_accuracy():
     """Against the paper: max is exact outside, not inside; SARDF is within its bound outside."""
-    kept = json.loads((PAGE.parent / "sardf_accuracy.json").read_text())
+    kept = json.loads((FOLDER / "sardf_accuracy.json").read_text())
     measured = {words: found["measured"] for words, found in kept.items()}
     ellipsoids = {
         blend: measured[f"scenes/two_ellipsoids.json --blend {blend}"]
@@ -204,16 +213,16 @@ def test_what_the_page_says_about_accuracy():
         assert measured["scenes/cad_plate.json --blend sardf=0.5"][side]["max"] < 1e-3
 
 
-@pytest.mark.parametrize("scene", sorted((PAGE.parent / "scenes").glob("*.json")))
-def test_scenes_of_the_page_load(scene):
+@pytest.mark.parametrize("scene", sorted((FOLDER / "scenes").glob("*.json")))
+def test_scenes_of_the_pages_load(scene):
     loaded = sardf.load(str(scene))
     assert np.isfinite(loaded.solid([[0.1, 0.2, 0.3]])).all()
-    assert f"(scenes/{Path(scene).name})" in TEXT
+    assert any(f"(scenes/{Path(scene).name})" in text for text in TEXTS.values())
 
 
 @pytest.fixture(scope="module")
 def corner():
-    return sardf.load(str(PAGE.parent / "scenes/corner.json")).fields
+    return sardf.load(str(FOLDER / "scenes/corner.json")).fields
 
 
 def slopes(field, middle, step=1e-6):
@@ -224,7 +233,7 @@ def slopes(field, middle, step=1e-6):
 
 def test_jumps_on_the_page_are_those_of_the_fields(corner):
     """The exact values from |∇F| = 1/(σ + (σ-1) r'(d)) with σ = √2 on the diagonal."""
-    rows = rows_of(section_of("## Where `sardf` is not C1"))
+    rows = rows_of(section_of("sardf", "## Where `sardf` is not C1"))
     growth = {1: 1.0, -2: -0.5}  # of the radius within the arc; R = 1
     assert len(rows) == 2
     for row, (level, inner) in zip(rows, growth.items(), strict=True):
@@ -264,7 +273,7 @@ def test_zones_and_circles_of_the_corner(corner):
 
 
 def test_typos_on_the_page():
-    rows = rows_of(section_of("## Corrected typos"))
+    rows = rows_of(section_of("sardf", "## Corrected typos"))
     assert len(rows) == len(sardf_tables.TYPOS) == TYPOS
     assert all(len(row) == 4 and all(cell.strip() for cell in row) for row in rows)
     half = {axis: sardf.half_space(normal=axis) for axis in "xy"}
@@ -273,3 +282,55 @@ def test_typos_on_the_page():
     for b, wanted in ((-12 - 4, [0.46, 7.54]), (-12 + 4, [1.2929, 2.7071])):  # printed, corrected
         roots = np.roots([2, b, 9 + 9 - 6 - 6 + 1])
         assert sorted(roots) == pytest.approx(wanted, abs=5e-3)
+
+
+def test_readings_on_the_page():
+    """Where numbers are given: weights that are not for the features, and Figure 12's influence."""
+    rows = rows_of(section_of("biswas", "## Readings and corrections"))
+    assert len(rows) == len(biswas_tables.READINGS) == READINGS
+    assert all(len(row) == 4 and all(cell.strip() for cell in row) for row in rows)
+    assert pytest.approx(1) == 0.3 * 1.28 + 0.7 * 0.88
+    curve, ring = sardf.point(at=(0, 0, 0)), sardf.point(at=(1, 0, 0))
+    for exponent, wanted in ((1, 1.125), (2, 0.8333), (3, 0.6)):
+        features = [
+            {"at": curve, "value": 1 - 1.5 * 0.5, "exponent": exponent},
+            {"at": ring, "value": 2},
+        ]
+        attributes = {"P": {"value": {"inverse_distance": {"features": features}}}}
+        scene = sardf.Scene(solid=sardf.sphere(radius=9), attributes=attributes)
+        assert scene.attributes["P"]([[0.5, 0, 0]])[0] == pytest.approx(wanted, abs=5e-5)
+
+
+def distance_to_rectangle(points, center, size):
+    """In x and z, 0 within it."""
+    beyond = np.abs(points[:, [0, 2]] - center) - np.array(size) / 2
+    return np.linalg.norm(np.maximum(beyond, 0), axis=1)
+
+
+def test_figures_of_the_cutter_are_the_papers_formulas(tmp_path, monkeypatch):
+    """4.2: P = 0.2 W1 + 1.0 W2 of silicon carbide, with W1 = u2 / (u1 + u2)."""
+    monkeypatch.chdir(ROOT)
+    shares, distances = (
+        next(d for d in biswas_page.PAPER.drawings() if d.image == f"biswas_{name}.png").words
+        for name in ("fig01b", "fig03")
+    )
+    columns = {}
+    for words in (shares, distances):
+        assert plot(at_lower_cost(words, tmp_path / "numbers.csv")) == 0
+        columns |= csv_of(tmp_path / "numbers.csv")
+    points = points_of(columns)
+    prism = distance_to_rectangle(points, (0.5, 2.5), (1, 0.6))
+    block = distance_to_rectangle(points, (4.5, 1), (3, 2))
+    for name, wanted in (("prism", prism), ("block", block)):
+        found = columns[f"=max(0, -{name})"]
+        inside = np.isfinite(found)
+        assert inside.sum() > 100
+        np.testing.assert_allclose(found[inside], wanted[inside], rtol=0, atol=1e-12)
+    shank = np.isfinite(columns["diamond"]) & (points[:, 2] < 2.79)
+    expected = (0.2 * block + prism) / (prism + block)
+    found = columns["silicon_carbide"]
+    np.testing.assert_allclose(found[shank], expected[shank], rtol=0, atol=1e-12)
+    assert columns["diamond"][shank] == pytest.approx(1 - expected[shank])
+    chip = np.isfinite(columns["diamond"]) & (points[:, 2] > 2.81)
+    assert chip.any()
+    assert set(columns["diamond"][chip]) == {1.0}

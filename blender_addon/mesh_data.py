@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Arrays to a Blender mesh with UVs, custom normals, and materials and attributes at its points."""
 
+import functools
 import math
 
 import bpy
@@ -53,8 +54,7 @@ def set_normals(data, normals):
 def set_fractions(data, fractions, materials):
     """One FLOAT point attribute with the volume fraction of each material, named after it."""
     for column, material in enumerate(materials):
-        attribute = data.attributes.new(name=material, type="FLOAT", domain="POINT")
-        attribute.data.foreach_set("value", _floats(fractions[:, column]))
+        _add(data, material, "FLOAT", "value", fractions[:, column])
 
 
 def set_attributes(data, attributes):
@@ -62,7 +62,6 @@ def set_attributes(data, attributes):
 
     Numbers become FLOAT, vectors of 2 or 3 components FLOAT_VECTOR, where a missing z is 0, and
     longer ones a FLOAT for each component: name_1, name_2, ... What is not finite becomes 0.
-    Blender appends .001 to a name that the mesh has already, such as that of a material.
     """
     names = {}
     for name, values in attributes.items():
@@ -80,7 +79,10 @@ def set_attributes(data, attributes):
 
 
 def _add(data, name, kind, member, values):
-    attribute = data.attributes.new(name=name, type=kind, domain="POINT")
+    """A point attribute; returns its name. One that the mesh has already, such as that of a
+    material, or that Blender keeps for itself, such as position, gets .001 appended."""
+    make = functools.partial(data.attributes.new, type=kind, domain="POINT")
+    attribute = make(name=name) or make(name=f"{name}.001")
     attribute.data.foreach_set(member, _floats(values))
     return attribute.name
 

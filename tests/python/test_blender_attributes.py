@@ -15,7 +15,10 @@ PLATE = {
     "title": "brushed plate",
     "fields": {"plate": {"box": {"size": [2 * HALF, 2 * HALF, 0.5]}}},
     "solid": "plate",
-    "materials": {"steel": {"color": "#c0c0c0", "metallic": 1, "roughness": 0.35}},
+    "materials": {
+        "steel": {"color": "#c0c0c0", "metallic": 1, "roughness": 0.35},
+        "normal": {"color": "#000000"},
+    },
     "attributes": {
         "grain_direction": ["=-3*y", "=3*x", 0],
         "along_x": [2, 0, 0],
@@ -24,6 +27,8 @@ PLATE = {
         "four": ["=x", "=y", "=z", 1],
         "steel": "=z",
         "pole": "=0*x/0",
+        "position": ["=z", 0, 0],
+        "material_index": "=x",
     },
 }
 SMALL = ("--resolution", 16, "--size", 64, "--width", 16, "--height", 12, "--samples", 1)
@@ -64,8 +69,11 @@ def test_attributes_stand_at_the_points_under_their_names(plate):
         "four_1": [x],
         "four_4": [nothing + 1],
         "steel": [nothing + 1],  # the material's fraction; the attribute comes after it
+        "normal.001" if version == "3.4.1" else "normal": [nothing],
         "steel.001": [z],
         "pole": [nothing],
+        "position.001": [z, nothing, nothing],
+        "material_index.001": [x],
     }
     for name, columns in expected.items():
         kind = "FLOAT_VECTOR" if len(columns) == 3 else "FLOAT"
@@ -107,6 +115,28 @@ def test_another_attribute_can_be_named(version, tmp_path):
     assert done.returncode == 0, done.stdout + done.stderr
     arrays = result_of("brushed_metal.py", version, tmp_path, output / "part.blend")
     assert json.loads(str(arrays["links"]))["attribute"] == "along_x"
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_baking_again_changes_the_attribute_and_keeps_the_rest(version, tmp_path):
+    attributes = {name: PLATE["attributes"][name] for name in ("along_x", "heat")}
+    scene = write_scene(tmp_path, PLATE | {"attributes": attributes | {"around": ["=-y", "=x", 0]}})
+    result = tmp_path / "result.json"
+    words = (HEADLESS.parent, scene, result, "", "along_x", "around", "", "around")
+    script = SCRIPTS / "rebake_tangent.py"
+    done = run_script(version, script, *words, user_folder=tmp_path / "user")
+    assert result.is_file(), done.stdout + done.stderr
+    found = json.loads(result.read_text())
+    plain, first, second, ended, again = found["states"]
+    assert (first["attribute"], second["attribute"]) == ("along_x", "around")
+    assert [s["strength"] for s in (first, second, again)] == pytest.approx([0.8, 0.3, 0.8])
+    assert first["linked"] == second["linked"] == again["linked"] == [True, True]
+    assert first["nodes"] == second["nodes"] == again["nodes"] == plain["nodes"] + 4
+    assert plain["linked"] == [False, False]
+    assert plain["anisotropic"] == 0
+    assert ended == plain
+    assert found["summary"][-1] == "attributes: along_x, heat, around"
+    assert "accepted are along_x, heat, around; did you mean 'along_x'?" in found["error"]
 
 
 WRONG = {

@@ -147,6 +147,9 @@ void check(const Options& options) {
   table.row("error bound", text(certified_error(scene.solid())));
   FieldRows(table, scene);
   if (!d.sections.empty()) table.row("sections", std::to_string(d.sections.size()));
+  for (const Warning& warning : scene.warnings(terminal_progress("searching contradictions"))) {
+    table.row("warning", warning.message);
+  }
   table.print();
 }
 

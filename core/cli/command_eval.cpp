@@ -74,7 +74,7 @@ std::string header(const Scene& scene) {
   for (const std::string& name : scene.material_names()) text += "," + quoted(name);
   for (const Attribute& a : scene.description().attributes) {
     for (size_t c = 0; c < a.components.size(); ++c) {
-      text += "," + quoted(a.components.size() == 1 ? a.name : a.name + "_" + "xyzw"[c % 4]);
+      text += "," + quoted(a.column(c, a.components.size()));
     }
   }
   return text + "\n";

@@ -39,21 +39,32 @@ py::array_t<double> fractions(const Scene& scene, const Points& points,
   return out;
 }
 
-// A scalar attribute gives (N,), a vector (N, components).
+// A scalar attribute gives (N,), a vector (N, components), named components {name: (N,)}.
+py::object attribute_values(const Evaluator& evaluator, const std::vector<std::string>& names,
+                            const Points& points) {
+  const size_t n = count_points(points), outputs = evaluator.outputs();
+  std::vector<size_t> shape{n};
+  if (outputs > 1 || !names.empty()) shape.push_back(outputs);
+  py::array_t<double> values(shape);
+  evaluator.values(points.data(), n, values.mutable_data());
+  if (names.empty()) return values;
+  py::dict by_name;
+  for (size_t c = 0; c < outputs; ++c) {
+    py::array_t<double> column(n);
+    for (size_t i = 0; i < n; ++i) column.mutable_data()[i] = values.data()[i * outputs + c];
+    by_name[names[c].c_str()] = column;
+  }
+  return by_name;
+}
+
 py::dict attributes(const Scene& scene) {
   py::dict out;
   for (const Attribute& attribute : scene.description().attributes) {
     std::vector<Expression> components;
     for (const Field& f : attribute.components) components.push_back(f.expression());
     out[attribute.name.c_str()] = py::cpp_function(
-        [evaluator = Evaluator(components)](const Points& points) {
-          const size_t n = count_points(points);
-          std::vector<size_t> shape{n};
-          if (evaluator.outputs() > 1) shape.push_back(evaluator.outputs());
-          py::array_t<double> values(shape);
-          evaluator.values(points.data(), n, values.mutable_data());
-          return values;
-        },
+        [evaluator = Evaluator(components), names = attribute.component_names](
+            const Points& points) { return attribute_values(evaluator, names, points); },
         py::arg("points"));
   }
   return out;
@@ -134,6 +145,15 @@ ScenePointer with_blend(const Scene& scene, const std::shared_ptr<Blend>& blend)
   return std::make_shared<Scene>(std::move(description));
 }
 
+std::vector<std::string> warnings(const Scene& scene, py::object callable) {
+  PythonProgress progress(std::move(callable));
+  const std::vector<Warning> found =
+      progress.run([&](const Progress& report) { return scene.warnings(report); });
+  std::vector<std::string> messages;
+  for (const Warning& warning : found) messages.push_back(warning.message);
+  return messages;
+}
+
 ScenePointer from_json(const std::string& text, const std::map<std::string, Field>& fields) {
   return std::make_shared<Scene>(parse_scene(text, "", fields));
 }
@@ -169,7 +189,12 @@ void bind_scenes(py::module_& m) {
       .def("fractions", &fractions, py::arg("points"), py::arg("outside") = "extend",
            "Volume fractions at points (N, 3): (N, materials), rows sum to 1. outside='nan' marks "
            "points outside the solid.")
-      .def_property_readonly("attributes", &attributes, "{name: function of points (N, 3)}.")
+      .def_property_readonly("attributes", &attributes,
+                             "{name: function of points (N, 3)} that gives (N,), of a vector (N, "
+                             "components), and of named components {name: (N,)}.")
+      .def("warnings", &warnings, py::arg("progress") = py::none(),
+           "What is accepted but may not be what is meant, as a list of sentences: features that "
+           "touch with contradicting values, functions not proven to lie in [0, 1].")
       .def("mesh", &mesh, py::arg("resolution") = 128, py::arg("cell_size") = 0.0,
            py::arg("sections") = true, py::arg("size") = 2048, py::arg("gutter") = 8,
            py::arg("progress") = py::none(),

@@ -27,9 +27,13 @@ bool append_attribute(const Scene& scene, const std::string& name,
                       std::vector<BakeChannel>& channels) {
   for (const Attribute& attribute : scene.description().attributes) {
     if (attribute.name != name) continue;
-    BakeChannel channel{name, {}};
-    for (const Field& f : attribute.components) channel.components.push_back(f.expression());
-    channels.push_back(std::move(channel));
+    const size_t n = attribute.components.size();
+    if (attribute.component_names.empty()) channels.push_back({name, {}});
+    for (size_t c = 0; c < n; ++c) {
+      // Components with names, as of a tensor, are an image each.
+      if (!attribute.component_names.empty()) channels.push_back({attribute.column(c, n), {}});
+      channels.back().components.push_back(attribute.components[c].expression());
+    }
     return true;
   }
   return false;

@@ -1,10 +1,12 @@
 #include "sardf/constructor.hpp"
 
 #include "sardf/constructor_of.hpp"
+#include "sardf/faces.hpp"
 #include "sardf/ops.hpp"
 #include "sardf/shapes_combine.hpp"
 #include "sardf/shapes_contour.hpp"
 #include "sardf/shapes_domain.hpp"
+#include "sardf/shapes_interpolation.hpp"
 #include "sardf/shapes_transform.hpp"
 
 namespace sardf {
@@ -32,9 +34,11 @@ Registry listed() {
     all.constructors.push_back(constructor_of_shape<Shape>());
   };
   CombineShapes::for_each(add_shape);
+  FaceShapes::for_each(add_shape);
   ContourShapes::for_each(add_shape);
   TransformShapes::for_each(add_shape);
   DomainShapes::for_each(add_shape);
+  InterpolationShapes::for_each(add_shape);
   BlendList::for_each(
       [&]<class B>(std::type_identity<B>) { all.blends.push_back(blend_type_of<B>()); });
   return all;

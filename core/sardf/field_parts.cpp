@@ -11,7 +11,9 @@ void append_fields(const std::vector<RuleValue>& values, std::vector<Field>& to)
       to.insert(to.end(), all->begin(), all->end());
     }
     if (const auto* functions = std::get_if<MaterialFunctions>(&value)) {
-      for (const auto& [name, field] : *functions) to.push_back(field);
+      for (const auto& [name, field] : *functions) {
+        if (field) to.push_back(field);
+      }
     }
     if (const auto* nested = std::get_if<Fractions>(&value)) sardf::append_fields(*nested, to);
     if (const auto* records = std::get_if<std::vector<Record>>(&value)) {

@@ -18,6 +18,12 @@ struct FeatureField {
 struct Influence {
   Field field;
 };
+struct FunctionsOrRest {
+  MaterialFunctions functions;
+};
+struct NamedValues {
+  MaterialFunctions functions;
+};
 
 template <class Member>
 struct IsRecords : std::false_type {};
@@ -37,6 +43,10 @@ constexpr RuleParameterType rule_parameter_type() {
   if constexpr (std::is_same_v<Member, Fractions>) return RuleParameterType::fractions;
   if constexpr (std::is_same_v<Member, Shares>) return RuleParameterType::shares;
   if constexpr (std::is_same_v<Member, MaterialFunctions>) return RuleParameterType::functions;
+  if constexpr (std::is_same_v<Member, FunctionsOrRest>) {
+    return RuleParameterType::functions_or_rest;
+  }
+  if constexpr (std::is_same_v<Member, NamedValues>) return RuleParameterType::named_values;
   if constexpr (std::is_same_v<Member, std::vector<Field>>) return RuleParameterType::values;
   if constexpr (IsRecords<Member>::value) return RuleParameterType::records;
 }
@@ -76,6 +86,8 @@ Struct from_rule_values(const std::vector<RuleValue>& values) {
       }
     } else if constexpr (requires { (made.*member).field; }) {
       (made.*member).field = std::get<Field>(value);
+    } else if constexpr (requires { (made.*member).functions; }) {
+      (made.*member).functions = std::get<MaterialFunctions>(value);
     } else {
       made.*member = std::get<Member>(value);
     }

@@ -36,6 +36,8 @@ Expression clamp01(const Expression& a) { return function("clamp", {a, constant(
 constexpr double least_influence = 1e-30;
 // Keeps differences of exponents free of inf - inf.
 constexpr double largest_exponent = 1e30;
+// A distance beyond this counts as this: float has no larger one that is finite.
+constexpr double largest_distance = 1e37;
 
 bool is_call_of(const Expression& e, const char* name) {
   return e->type == Node::Type::operation && e->operation->info().name == name;
@@ -112,13 +114,59 @@ std::vector<Expression> Formulas::values(const Lowering& lowering) const {
   return out;
 }
 
+void FractionFunctions::check() const {
+  int rests = 0;
+  for (const auto& [material, field] : functions.functions) rests += !field;
+  if (rests > 1) {
+    throw Error(std::to_string(rests) + " materials take the rest; only one can");
+  }
+}
+
+// Their sum is 1, so that of their positive parts is at least 1.
+std::vector<Expression> FractionFunctions::values(const Lowering& lowering) const {
+  std::vector<Expression> shares;
+  Expression given = constant(0);
+  for (const auto& [material, field] : functions.functions) {
+    if (field) given = given + field.expression();
+  }
+  for (const auto& [material, field] : functions.functions) {
+    const Expression share = field ? field.expression() : constant(1) - given;
+    shares.push_back(function("clamp", {share, constant(0), constant(1e30)}));
+  }
+  const Expression total = max(sum(shares), constant(1e-30));
+  std::vector<Expression> out(lowering.materials.size(), constant(0));
+  for (size_t i = 0; i < shares.size(); ++i) {
+    out[place_of(functions.functions[i].first, lowering.materials)] = shares[i] / total;
+  }
+  return out;
+}
+
 std::vector<Expression> AttributeValue::values(const Lowering& lowering) const {
   if (components.size() != lowering.components) {
     throw Error("the value has " + std::to_string(components.size()) + " components where " +
                 std::to_string(lowering.components) + " are needed");
   }
+  if (!lowering.names.empty()) {
+    throw Error("the value has no names for its components where others have");
+  }
   std::vector<Expression> out;
   for (const Field& f : components) out.push_back(f.expression());
+  return out;
+}
+
+std::vector<Expression> NamedComponents::values(const Lowering& lowering) const {
+  const MaterialFunctions& named = components.functions;
+  if (named.size() != lowering.names.size()) {
+    throw Error("the value has " + std::to_string(named.size()) + " named components where " +
+                std::to_string(lowering.names.size()) + " are needed");
+  }
+  std::vector<Expression> out;
+  for (const std::string& wanted : lowering.names) {
+    const auto found = std::find_if(named.begin(), named.end(),
+                                    [&](const auto& pair) { return pair.first == wanted; });
+    if (found == named.end()) throw Error("the value has no component '" + wanted + "'");
+    out.push_back(found->second.expression());
+  }
   return out;
 }
 
@@ -137,11 +185,13 @@ std::vector<WeightedPart> InverseDistance::parts(double diagonal) const {
   const Expression least = constant(on_feature * diagonal);
   std::vector<Expression> exponents, on;
   for (const Feature& feature : features) {
-    const Expression u = feature_distance(feature.at.field), factor = constant(-feature.exponent);
-    Expression a = factor * log(max(least, u));
-    if (feature.influence.field) {
-      a = function("clamp", {a + factor * logarithm(feature.influence.field.expression()),
-                             constant(-largest_exponent), constant(largest_exponent)});
+    const Expression u = feature_distance(feature.at.field);
+    Expression a = log(function("clamp", {u, least, constant(largest_distance)}));
+    if (feature.influence.field) a = a + logarithm(feature.influence.field.expression());
+    a = constant(-feature.exponent) * a;
+    // Without an influence |ln u| is less than 1000.
+    if (feature.influence.field || feature.exponent > largest_exponent / 1000) {
+      a = function("clamp", {a, constant(-largest_exponent), constant(largest_exponent)});
     }
     exponents.push_back(a);
     on.push_back(less_equal(u, least));

@@ -40,6 +40,28 @@ struct Formulas {
   std::vector<Expression> values(const Lowering& lowering) const;
 };
 
+/// Source: Biswas, Shapiro, Tsukanov 2004, section 4.2: P^{i,j}, whose sum over the materials j is
+/// 1 on every feature i; by Theorem 1 so is then the sum of what is interpolated.
+struct FractionFunctions {
+  static constexpr const char *name = "functions",
+                              *doc =
+                                  "A function for each material, not divided by anything: that "
+                                  "they sum to 1 is proven, or it is an error. One may be the "
+                                  "word \"rest\": 1 minus the others. In the solid they must lie "
+                                  "in [0, 1]; outside of it what is less than 0 counts as 0 and "
+                                  "the others are scaled to the sum 1.";
+  static constexpr RuleUse use = RuleUse::fractions;
+  FunctionsOrRest functions;
+  template <class V>
+  static void parameters(V& v) {
+    v(Parameter{"functions", "a field for each material, or \"rest\" for one", Unit::none,
+                Range::any, true, 1},
+      &FractionFunctions::functions);
+  }
+  void check() const;
+  std::vector<Expression> values(const Lowering& lowering) const;
+};
+
 struct AttributeValue {
   static constexpr const char *name = "value", *doc = "A field for each component.";
   static constexpr RuleUse use = RuleUse::values;
@@ -48,6 +70,21 @@ struct AttributeValue {
   static void parameters(V& v) {
     v(Parameter{"components", "the components", Unit::none, Range::any, true, 1},
       &AttributeValue::components);
+  }
+  std::vector<Expression> values(const Lowering& lowering) const;
+};
+
+struct NamedComponents {
+  static constexpr const char *name = "components",
+                              *doc =
+                                  "A field for each named component, as of a tensor; wherever the "
+                                  "value is written its columns carry the names.";
+  static constexpr RuleUse use = RuleUse::values;
+  NamedValues components;
+  template <class V>
+  static void parameters(V& v) {
+    v(Parameter{"components", "a field for each name", Unit::none, Range::any, true, 1},
+      &NamedComponents::components);
   }
   std::vector<Expression> values(const Lowering& lowering) const;
 };
@@ -229,7 +266,8 @@ struct Partition {
   std::vector<WeightedPart> parts(double diagonal) const;
 };
 
-using FractionRules = OpList<ConstantFractions, InverseDistance, BlendBetween, Ramp, Bands,
-                             Formulas, Partition, AttributeValue, OfMaterials>;
+using FractionRules =
+    OpList<ConstantFractions, InverseDistance, BlendBetween, Ramp, Bands, Formulas,
+           FractionFunctions, Partition, AttributeValue, NamedComponents, OfMaterials>;
 
 }  // namespace sardf

@@ -45,19 +45,24 @@ void check_parameter(const RuleParameter& p, const RuleValue& value) {
   }
 }
 
-void collect_materials(const std::vector<RuleValue>& values, std::vector<std::string>& names) {
+void collect_materials(const std::vector<RuleParameter>& parameters,
+                       const std::vector<RuleValue>& values, std::vector<std::string>& names) {
   const auto add = [&](const std::string& name) {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   };
-  for (const RuleValue& value : values) {
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    const RuleValue& value = values.at(i);
+    if (parameters[i].type == RuleParameterType::named_values) continue;
     if (const auto* shares = std::get_if<Shares>(&value)) {
       for (const auto& [name, share] : *shares) add(name);
     } else if (const auto* functions = std::get_if<MaterialFunctions>(&value)) {
       for (const auto& [name, field] : *functions) add(name);
     } else if (const auto* nested = std::get_if<Fractions>(&value)) {
-      collect_materials(nested->rule().arguments, names);
+      collect_materials(nested->rule().type->parameters, nested->rule().arguments, names);
     } else if (const auto* records = std::get_if<std::vector<Record>>(&value)) {
-      for (const Record& record : *records) collect_materials(record.values, names);
+      for (const Record& record : *records) {
+        collect_materials(parameters[i].record, record.values, names);
+      }
     }
   }
 }
@@ -97,6 +102,18 @@ const std::vector<RuleType>& fraction_rules() {
   return all;
 }
 
+bool has_whole_value(const RuleType& type) {
+  switch (type.parameters[0].type) {
+    case RuleParameterType::shares:
+    case RuleParameterType::functions:
+    case RuleParameterType::functions_or_rest:
+    case RuleParameterType::named_values:
+      return true;
+    default:
+      return false;
+  }
+}
+
 const RuleType* find_fraction_rule(const std::string& name) {
   for (const RuleType& type : fraction_rules()) {
     if (type.name == name) return &type;
@@ -120,7 +137,10 @@ Fractions make_fractions(const std::string& rule, std::vector<RuleValue> argumen
 
 std::vector<Expression> lower(const Fractions& fractions, const std::vector<std::string>& materials,
                               double diagonal) {
-  return lower(fractions, {materials, diagonal, 0, {}});
+  Lowering lowering;
+  lowering.materials = materials;
+  lowering.diagonal = diagonal;
+  return lower(fractions, lowering);
 }
 
 std::vector<Expression> lower(const Fractions& fractions, const Lowering& lowering) {
@@ -158,7 +178,9 @@ Expression feature_distance(const Field& field) {
 
 std::vector<std::string> materials_of(const Fractions& fractions) {
   std::vector<std::string> names;
-  if (fractions) collect_materials(fractions.rule().arguments, names);
+  if (fractions) {
+    collect_materials(fractions.rule().type->parameters, fractions.rule().arguments, names);
+  }
   return names;
 }
 

@@ -40,7 +40,8 @@ class Fractions {
   RulePointer rule_;
 };
 
-/// A number, or a field, for each of some materials, in the order given.
+/// A number, or a field, for each of some materials, in the order given. The field of a material
+/// that takes what the others leave is empty.
 using Shares = std::vector<std::pair<std::string, double>>;
 using MaterialFunctions = std::vector<std::pair<std::string, Field>>;
 
@@ -57,12 +58,14 @@ enum class RuleParameterType {
   number,
   text,
   field,
-  feature,    // a field whose distance counts: see feature_distance
-  influence,  // a field; its formula may use u, the distance to the record's feature
-  fractions,  // a material, or a rule; of an attribute a value, or a rule
-  shares,     // {material: number}: the rule's whole value
-  functions,  // {material: field}: the rule's whole value
-  values,     // the components of a value
+  feature,            // a field whose distance counts: see feature_distance
+  influence,          // a field; its formula may use u, the distance to the record's feature
+  fractions,          // a material, or a rule; of an attribute a value, or a rule
+  shares,             // {material: number}: the rule's whole value
+  functions,          // {material: field}: the rule's whole value
+  functions_or_rest,  // the same, where one may take what the others leave
+  values,             // the components of a value
+  named_values,       // {component: field}: the rule's whole value
   records,
 };
 
@@ -90,9 +93,10 @@ struct RuleType {
 /// What rules are lowered for: fractions of materials, or the components of a value.
 struct Lowering {
   std::vector<std::string> materials;
-  double diagonal = 1;                // of the scene's bounds: the scale of its tolerances
-  size_t components = 0;              // of a value; 0: fractions
-  std::vector<Expression> fractions;  // of the materials, for values that depend on them
+  double diagonal = 1;                     // of the scene's bounds: the scale of its tolerances
+  size_t components = 0;                   // of a value; 0: fractions
+  std::vector<std::string> names;          // of the components; empty: they have none
+  std::vector<Expression> fractions = {};  // of the materials, for values that depend on them
 };
 
 /// A part of space that a rule blends in: how much of it there is, and what it is made of.
@@ -110,6 +114,8 @@ struct Rule {
 };
 
 const std::vector<RuleType>& fraction_rules();
+/// Whether the rule has one parameter whose value stands for all of them, as {"constant": {...}}.
+bool has_whole_value(const RuleType& type);
 const RuleType* find_fraction_rule(const std::string& name);
 
 /// Checks the arguments and makes the rule; those left out at the end have their defaults. Throws

@@ -8,7 +8,9 @@
 #include "sardf/bounds.hpp"
 #include "sardf/constructor.hpp"
 #include "sardf/error.hpp"
+#include "sardf/field_parts.hpp"
 #include "sardf/shapes_combine.hpp"
+#include "sardf/unit_vectors.hpp"
 
 namespace sardf {
 
@@ -73,6 +75,7 @@ void check_parts(SceneDescription& scene) {
   metres_per_unit(scene.units);
   check_materials(scene);
   std::set<std::string> names;
+  std::vector<std::pair<std::string, std::string>> columns;  // of components with names
   for (const Attribute& a : scene.attributes) {
     if (!names.insert(a.name).second) {
       fail(scene, "/attributes", "there are two attributes named '" + a.name + "'");
@@ -80,6 +83,16 @@ void check_parts(SceneDescription& scene) {
     if (is_taken_by_channels(a.name)) {
       fail(scene, "/attributes/" + a.name,
            "'" + a.name + "' names a channel of every bake; an attribute needs another name");
+    }
+    for (size_t c = 0; c < a.component_names.size(); ++c) {
+      columns.push_back({a.name, a.column(c, a.component_names.size())});
+    }
+  }
+  for (const auto& [owner, column] : columns) {
+    if (!names.insert(column).second) {
+      fail(scene, "/attributes/" + owner,
+           "a component of '" + owner + "' would be called '" + column +
+               "', as something else is; it needs another name");
     }
   }
   for (const Section& section : scene.sections) {
@@ -126,7 +139,49 @@ void check_sums(const SceneDescription& scene, const Expression& solid,
   }
 }
 
+Lowering lowering_of_fractions(const Scene& scene) {
+  Lowering lowering;
+  lowering.materials = scene.material_names();
+  lowering.diagonal = scene.bounds().diagonal();
+  return lowering;
+}
+
+// The rules inside the scene's fields, each once, and what they are called.
+std::vector<std::pair<std::string, RulePointer>> rules_in_fields(const SceneDescription& scene) {
+  std::map<const Construction*, std::string> names;
+  std::vector<Field> open;
+  for (const NamedField& named : scene.fields) {
+    names.emplace(named.field.construction(), "the field '" + named.name + "'");
+    open.push_back(named.field);
+  }
+  open.push_back(scene.solid);
+  append_fields(scene.fractions, open);
+  for (const Attribute& attribute : scene.attributes) append_fields(attribute.rule, open);
+  std::set<const Construction*> seen;
+  std::vector<std::pair<std::string, RulePointer>> rules;
+  while (!open.empty()) {
+    const Field field = open.back();
+    open.pop_back();
+    const Construction* made = field.construction();
+    if (!made || !seen.insert(made).second) continue;
+    for (const Value& value : made->arguments) {
+      append_fields(value, open);
+      if (const auto* rule = std::get_if<RulePointer>(&value)) {
+        const auto name = names.find(made);
+        rules.emplace_back(name == names.end() ? "a field without a name" : name->second, *rule);
+      }
+    }
+    for (const auto& [name, part] : made->names) open.push_back(part);
+  }
+  return rules;
+}
+
 }  // namespace
+
+std::string Attribute::column(size_t c, size_t n) const {
+  if (c < component_names.size()) return name + "_" + component_names[c];
+  return n == 1 ? name : name + "_" + "xyzw"[c % 4];
+}
 
 std::vector<std::string> unit_names() {
   std::vector<std::string> names;
@@ -166,22 +221,68 @@ Scene::Scene(SceneDescription description, const Progress& progress)
                                names, diagonal));
   });
   check_sums(scene, solid(), fractions_, bounds_);
-  for (Attribute& attribute : scene.attributes) {
+  unproven_ = located(scene, "/fractions", [&] {
+    return check_functions({"the fractions", scene.fractions, lowering_of_fractions(*this)},
+                           checked_place(), progress);
+  });
+  lower_attributes();
+  std::vector<Expression> outputs = fractions_;
+  outputs.push_back(solid());
+  fraction_evaluator_ = Evaluator(outputs);
+}
+
+void Scene::lower_attributes() {
+  for (Attribute& attribute : description_.attributes) {
     if (!attribute.rule) {
       attribute.rule = Fractions::value(attribute.components);
       attribute.rule_components = attribute.components.size();
     }
-    const auto lowered = located(scene, "/attributes/" + attribute.name, [&] {
-      return lower(attribute.rule, {names, diagonal, attribute.rule_components, fractions_});
+    const auto lowered = located(description_, "/attributes/" + attribute.name, [&] {
+      auto components = lower(attribute.rule, lowering_of(attribute));
+      if (!attribute.unit_vector) return components;
+      if (components.size() != 3) {
+        throw Error("a unit vector has 3 components; the value has " +
+                    std::to_string(components.size()));
+      }
+      return unit_vector(components, largest_prescribed(attribute.rule), attribute.fallback);
     });
     attribute.components.clear();
-    for (const Expression& e : joined(scene, lowered)) {
+    for (const Expression& e : joined(description_, lowered)) {
       attribute.components.push_back(Field(e, {}, nullptr));
     }
   }
-  std::vector<Expression> outputs = fractions_;
-  outputs.push_back(solid());
-  fraction_evaluator_ = Evaluator(outputs);
+}
+
+Lowering Scene::lowering_of(const Attribute& attribute) const {
+  return {material_names(), bounds_.diagonal(), attribute.rule_components,
+          attribute.component_names, fractions_};
+}
+
+CheckedPlace Scene::checked_place() const {
+  return {solid(), bounds_, in_region * bounds_.diagonal(), description_.blend};
+}
+
+std::vector<Warning> Scene::warnings(const Progress& progress) const {
+  const CheckedPlace place = checked_place();
+  std::vector<Warning> all = unproven_;
+  const auto search = [&](const CheckedRule& checked, const std::vector<std::string>& names) {
+    if (!checked.rule) return;
+    for (const Contradiction& found : find_contradictions(checked, place, progress)) {
+      all.push_back(warning_of(found, names));
+    }
+  };
+  search({"the fractions", description_.fractions, lowering_of_fractions(*this)}, material_names());
+  for (const Attribute& attribute : description_.attributes) {
+    search({"the attribute '" + attribute.name + "'", attribute.rule, lowering_of(attribute)},
+           attribute.component_names);
+  }
+  for (const auto& [owner, rule] : rules_in_fields(description_)) {
+    Lowering one;
+    one.diagonal = bounds_.diagonal();
+    one.components = 1;
+    search({owner, Fractions(rule), one}, {});
+  }
+  return all;
 }
 
 std::vector<std::string> Scene::material_names() const {

@@ -12,6 +12,7 @@
 #include "sardf/field.hpp"
 #include "sardf/fractions.hpp"
 #include "sardf/progress.hpp"
+#include "sardf/scene_checks.hpp"
 
 namespace sardf {
 
@@ -39,6 +40,15 @@ struct Attribute {
   std::vector<Field> components;
   Fractions rule;
   size_t rule_components = 1;
+  std::vector<std::string> component_names;  // as of a tensor; empty: they have none
+  /// Three components that are scaled to the length 1. Where none is larger than 1e-12 of the
+  /// largest that any part of the rule prescribes at the point, the fallback counts.
+  bool unit_vector = false;
+  Vec3 fallback{0, 0, 1};
+
+  /// What a table calls component c of n: the attribute itself where it is one, else the
+  /// attribute's name, _, and the component's name or x, y, z, w.
+  std::string column(size_t c, size_t n) const;
 };
 
 /// A cut: what is removed from the picture, except from the parts that are kept whole.
@@ -118,19 +128,29 @@ class Scene {
   Expression roughness() const;
   Expression metallic() const;
 
+  /// What is accepted but may not be what is meant: features that touch with contradicting values,
+  /// functions that are not proven to lie in [0, 1]. Searches for seconds at most; throws
+  /// Cancelled.
+  std::vector<Warning> warnings(const Progress& progress = {}) const;
+
   /// fractions at n points (n × 3, row-major) into n × materials; rows are renormalised to sum 1.
   /// `outside_nan`: NaN where the point lies outside the solid. Throws Error naming the place where
   /// fractions cannot be normalised.
   void fractions_at(const double* points, size_t n, double* out, bool outside_nan = false) const;
 
  private:
+  void lower_attributes();
+  CheckedPlace checked_place() const;
+  Lowering lowering_of(const Attribute& attribute) const;
+
   SceneDescription description_;
   Field solid_field_;
   std::vector<NamedField> fields_;
   BoundingBox bounds_;
   Expression drawn_, removed_;
   std::vector<Expression> fractions_;
-  Evaluator fraction_evaluator_;  // the fractions, then the solid
+  std::vector<Warning> unproven_;  // what the checks of the constructor left open
+  Evaluator fraction_evaluator_;   // the fractions, then the solid
 };
 
 }  // namespace sardf

@@ -210,28 +210,44 @@ class SceneReader : private RuleReader {
   void read_attribute(const JsonPlace& place, const std::string& name) {
     Attribute attribute;
     attribute.name = name;
-    size_t components = 0;
+    ValueShape shape;
     Fractions made;
     scene_.source.lines[place.pointer] = place.value->line;
     if (place.value->is(Type::object)) {
-      check_keys(place, {"value", "unit"});
+      check_keys(place, {"value", "unit", "unit_vector", "fallback"});
       if (const auto at = place.find("unit")) attribute.unit = text(*at).value_or("");
       if (const auto at = place.find("value")) {
-        made = value(*at, components);
+        made = value(*at, shape);
       } else {
         error(place, "an attribute needs 'value': a field, a number, a list of these, or a rule");
       }
+      read_unit_vector(place, attribute);
     } else {
-      made = value(place, components);
+      made = value(place, shape);
     }
     if (!made) return;
+    if (attribute.unit_vector && shape.components != 3) {
+      error(place,
+            "a unit vector has 3 components; the value has " + std::to_string(shape.components));
+    }
+    attribute.component_names = shape.names;
     if (made.rule().type->name == "value") {
       attribute.components = std::get<std::vector<Field>>(made.rule().arguments[0]);
     } else {
       attribute.rule = made;
-      attribute.rule_components = components;
+      attribute.rule_components = shape.components;
     }
     scene_.attributes.push_back(std::move(attribute));
+  }
+
+  void read_unit_vector(const JsonPlace& place, Attribute& attribute) {
+    if (const auto at = place.find("unit_vector")) {
+      attribute.unit_vector = boolean(*at).value_or(false);
+    }
+    if (const auto at = place.find("fallback")) {
+      if (!attribute.unit_vector) error(*at, "a fallback needs \"unit_vector\": true");
+      attribute.fallback = direction(*at, "fallback").value_or(attribute.fallback);
+    }
   }
 
   void read_sections(const JsonPlace& place) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "sardf/formula.hpp"
+#include "sardf/fractions.hpp"
+#include "sardf/scene_file_rules.hpp"
 
 namespace sardf {
 
@@ -10,26 +12,118 @@ namespace {
 
 using Type = JsonValue::Type;
 
-// {"boundary": "bore"} is short for {"boundary": {"solid": "bore"}}, and {"union": ["a", "b"]} for
-// {"union": {"of": ["a", "b"]}}: the parameters that are meant, or an object without members.
+bool has_one_member(const JsonValue& value) {
+  return value.is(Type::object) && value.members.size() == 1;
+}
+
+// Whether an object is a rule rather than an object of parameters, one of whose names may be
+// misspelt.
+bool is_rule(const Constructor& constructor, const JsonValue& value) {
+  std::vector<std::string> names;
+  for (const ParameterInfo& info : constructor.parameters) names.push_back(info.name);
+  const std::string& key = value.members[0].key;
+  if (std::find(names.begin(), names.end(), key) != names.end()) return false;
+  return find_fraction_rule(key) || find_constructor(key) || did_you_mean(key, names).empty();
+}
+
+bool is_short_form(const Constructor& constructor, const JsonValue& value) {
+  switch (constructor.parameters[0].type) {
+    case ParameterType::field:
+      return value.is(Type::string);
+    case ParameterType::fields:
+      return value.is(Type::array);
+    case ParameterType::rule:
+      return value.is(Type::string) || value.is(Type::number) ||
+             (has_one_member(value) && is_rule(constructor, value));
+    default:
+      return false;
+  }
+}
+
+// {"boundary": "bore"} is short for {"boundary": {"solid": "bore"}}, {"union": ["a", "b"]} for
+// {"union": {"of": ["a", "b"]}}, and {"value_of": {"ramp": ...}} for {"value_of": {"rule": {"ramp":
+// ...}}}: the parameters that are meant, or an object without members.
 JsonValue as_parameters(const Constructor& constructor, const JsonValue& value) {
   JsonValue object = JsonValue::object();
   object.line = value.line;
-  if (constructor.parameters.empty()) return object;
-  const ParameterInfo& first = constructor.parameters[0];
-  const bool short_form = (first.type == ParameterType::field && value.is(Type::string)) ||
-                          (first.type == ParameterType::fields && value.is(Type::array));
-  if (short_form) object.add(first.name, value);
+  if (!constructor.parameters.empty() && is_short_form(constructor, value)) {
+    object.add(constructor.parameters[0].name, value);
+  }
   return object;
 }
 
 void collect_names(const JsonValue& value, std::vector<std::string>& names);
+void collect_value_names(const JsonValue& value, std::vector<std::string>& names);
 
-// The names in every text of a rule, whose values are fields at any depth.
-void collect_all_names(const JsonValue& value, std::vector<std::string>& names) {
-  if (value.is(Type::string)) collect_names(value, names);
-  for (const JsonValue& element : value.elements) collect_all_names(element, names);
-  for (const JsonMember& member : value.members) collect_all_names(member.value, names);
+// The names in the value of one parameter of a rule for values.
+void collect_rule_names(const JsonValue& value, const RuleParameter& parameter,
+                        std::vector<std::string>& names) {
+  switch (parameter.type) {
+    case RuleParameterType::field:
+    case RuleParameterType::feature:
+      return collect_names(value, names);
+    case RuleParameterType::influence: {
+      std::vector<std::string> inside;
+      collect_names(value, inside);
+      // u is the distance to the feature here, whatever field may have that name.
+      std::erase(inside, "u");
+      names.insert(names.end(), inside.begin(), inside.end());
+      return;
+    }
+    case RuleParameterType::fractions:
+      return collect_value_names(value, names);
+    case RuleParameterType::named_values:
+      for (const JsonMember& member : value.members) collect_names(member.value, names);
+      return;
+    case RuleParameterType::records:
+      for (const JsonValue& element : value.elements) {
+        for (const RuleParameter& inner : parameter.record) {
+          for (const std::string& key : keys_of(inner, true)) {
+            if (const JsonValue* found = element.find(key))
+              collect_rule_names(*found, inner, names);
+          }
+        }
+      }
+      return;
+    default:
+      return;
+  }
+}
+
+// The names in a value: a field, a list of fields, or a rule.
+void collect_value_names(const JsonValue& value, std::vector<std::string>& names) {
+  for (const JsonValue& element : value.elements) collect_names(element, names);
+  const RuleType* rule = has_one_member(value) && !find_constructor(value.members[0].key)
+                             ? find_fraction_rule(value.members[0].key)
+                             : nullptr;
+  if (!rule) return collect_names(value, names);
+  for (const RuleParameter& parameter : rule->parameters) {
+    const JsonValue& inside = value.members[0].value;
+    const JsonValue* given = has_whole_value(*rule) ? &inside : inside.find(parameter.name);
+    if (given) collect_rule_names(*given, parameter, names);
+  }
+}
+
+// The names in the value of one parameter of a constructor.
+void collect_argument_names(const JsonValue& value, ParameterType type,
+                            std::vector<std::string>& names) {
+  switch (type) {
+    case ParameterType::field:
+    case ParameterType::optional_field:
+      return collect_names(value, names);
+    case ParameterType::rule:
+      return collect_value_names(value, names);
+    case ParameterType::fields:
+      for (const JsonValue& element : value.elements) collect_names(element, names);
+      return;
+    case ParameterType::sections:
+      for (const JsonValue& element : value.elements) {
+        if (const JsonValue* field = element.find("field")) collect_names(*field, names);
+      }
+      return;
+    default:
+      return;
+  }
 }
 
 // Every name that a field's text or object mentions, known or not.
@@ -44,27 +138,14 @@ void collect_names(const JsonValue& value, std::vector<std::string>& names) {
     }
     return;
   }
-  if (!value.is(Type::object) || value.members.size() != 1) return;
+  if (!has_one_member(value)) return;
   const Constructor* constructor = find_constructor(value.members[0].key);
   if (!constructor) return;
   const JsonValue short_form = as_parameters(*constructor, value.members[0].value);
   const JsonValue& given = short_form.members.empty() ? value.members[0].value : short_form;
   for (const ParameterInfo& info : constructor->parameters) {
     const JsonValue* argument = given.find(info.name);
-    if (!argument) continue;
-    if (info.type == ParameterType::field || info.type == ParameterType::optional_field) {
-      collect_names(*argument, names);
-    }
-    if (info.type == ParameterType::rule) collect_all_names(*argument, names);
-    if (info.type == ParameterType::fields) {
-      for (const JsonValue& element : argument->elements) collect_names(element, names);
-    }
-    if (info.type == ParameterType::sections) {
-      for (const JsonValue& element : argument->elements) {
-        const JsonValue* field = element.find("field");
-        if (field) collect_names(*field, names);
-      }
-    }
+    if (argument) collect_argument_names(*argument, info.type, names);
   }
 }
 
@@ -252,10 +333,18 @@ Field FieldReader::constructed_field(const JsonPlace& place) {
     return {};
   }
   const JsonPlace inside = place.member(member);
-  if (const JsonValue object = as_parameters(*constructor, member.value); !object.members.empty()) {
-    return construct({&object, inside.pointer}, *constructor);
+  const JsonValue object = as_parameters(*constructor, member.value);
+  if (object.members.empty()) return construct(inside, *constructor);
+  const size_t before = errors.size();
+  const Field made = construct({&object, inside.pointer}, *constructor);
+  // The file does not say the parameter's name.
+  const std::string unsaid = pointer_to(inside.pointer, object.members[0].key);
+  for (size_t i = before; i < errors.size(); ++i) {
+    if (!(errors[i].pointer + "/").starts_with(unsaid + "/")) continue;
+    errors[i] = Error(errors[i].message, errors[i].file, errors[i].line,
+                      inside.pointer + errors[i].pointer.substr(unsaid.size()));
   }
-  return construct(inside, *constructor);
+  return made;
 }
 
 Field FieldReader::construct(const JsonPlace& inside, const Constructor& constructor) {

@@ -1,6 +1,7 @@
 #include "sardf/scene_file_rules.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace sardf {
 
@@ -8,10 +9,20 @@ namespace {
 
 using Type = JsonValue::Type;
 
-bool is_whole(const RuleType& type) {
-  const RuleParameterType first = type.parameters[0].type;
-  return first == RuleParameterType::shares || first == RuleParameterType::functions;
+std::string list_of(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
 }
+
+bool is_component_name(const std::string& name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+    return ('a' <= c && c <= 'z') || ('A' <= c && c <= 'Z') || ('0' <= c && c <= '9') || c == '_';
+  });
+}
+
+// The word, not a field of that name, which "=rest" means.
+bool is_rest(const JsonValue& value) { return value.is(Type::string) && value.text == "rest"; }
 
 }  // namespace
 
@@ -43,20 +54,22 @@ Fractions RuleReader::fractions(const JsonPlace& place) {
   return {};
 }
 
-Fractions RuleReader::value(const JsonPlace& place, size_t& components) {
+Fractions RuleReader::value(const JsonPlace& place, ValueShape& shape) {
   const JsonValue& json = *place.value;
   const bool is_rule =
       json.is(Type::object) && json.members.size() == 1 && !find_constructor(json.members[0].key);
-  return is_rule ? rule(place, {&components}) : constant_value(place, components);
+  return is_rule ? rule(place, {&shape}) : constant_value(place, shape);
 }
 
 RulePointer RuleReader::value_rule(const JsonPlace& place) {
-  size_t components = 1;
-  const Fractions read = value(place, components);
+  ValueShape one{1, {}};
+  const bool before = std::exchange(for_field_, true);
+  const Fractions read = value(place, one);
+  for_field_ = before;
   return read ? read.pointer() : nullptr;
 }
 
-Fractions RuleReader::constant_value(const JsonPlace& place, size_t& components) {
+Fractions RuleReader::constant_value(const JsonPlace& place, ValueShape& shape) {
   std::vector<Field> fields;
   if (place.value->is(Type::array)) {
     for (size_t i = 0; i < place.value->elements.size(); ++i) {
@@ -72,17 +85,22 @@ Fractions RuleReader::constant_value(const JsonPlace& place, size_t& components)
   for (const Field& f : fields) {
     if (!f) return {};
   }
-  if (components == 0) components = fields.size();
-  if (components != fields.size()) {
+  if (shape.components == 0) shape.components = fields.size();
+  if (shape.components != fields.size()) {
     error(place, "found " + std::to_string(fields.size()) + " components where others have " +
-                     std::to_string(components));
+                     std::to_string(shape.components));
+    return {};
+  }
+  if (!shape.names.empty()) {
+    error(place, "found a component without a name where others have the names " +
+                     list_of(shape.names) + ", as in {\"components\": {...}}");
     return {};
   }
   return Fractions::value(std::move(fields));
 }
 
 Fractions RuleReader::nested(const JsonPlace& place, Wanted wanted) {
-  return wanted.components ? value(place, *wanted.components) : fractions(place);
+  return wanted.shape ? value(place, *wanted.shape) : fractions(place);
 }
 
 Fractions RuleReader::rule(const JsonPlace& place, Wanted wanted) {
@@ -93,27 +111,15 @@ Fractions RuleReader::rule(const JsonPlace& place, Wanted wanted) {
     return {};
   }
   const JsonMember& member = json.members[0];
-  const RuleType* type = find_fraction_rule(member.key);
-  if (!type || type->use == wanted.other() || type->name == "value") {
-    std::vector<std::string> names;
-    for (const RuleType& known : fraction_rules()) {
-      if (known.use != wanted.other() && known.name != "value") names.push_back(known.name);
-    }
-    std::string message =
-        "there is no rule '" + member.key + "' here" + did_you_mean(member.key, names);
-    if (message.back() != '?') {
-      message += "; accepted are";
-      for (const std::string& name : names) message += (&name == &names[0] ? " " : ", ") + name;
-    }
-    error_at_key(place, member, message);
-    return {};
-  }
+  const RuleType* type = known_rule(place, member, wanted);
+  if (!type) return {};
   const JsonPlace inside = place.member(member);
   std::optional<std::vector<RuleValue>> values;
-  if (is_whole(*type)) {
+  if (has_whole_value(*type)) {
     RuleValue whole = rule_value(inside, type->parameters[0], wanted, {});
     if (whole.index() == 0) return {};
-    if (wanted.components && *wanted.components == 0) *wanted.components = 1;
+    // Named components have set it.
+    if (wanted.shape && wanted.shape->components == 0) wanted.shape->components = 1;
     values = {std::move(whole)};
   } else {
     values = rule_values(inside, type->name, type->parameters, wanted);
@@ -123,13 +129,33 @@ Fractions RuleReader::rule(const JsonPlace& place, Wanted wanted) {
       .value_or(Fractions());
 }
 
+// Null, with an error at its key, where there is none of the name or none that may stand here.
+const RuleType* RuleReader::known_rule(const JsonPlace& place, const JsonMember& member,
+                                       Wanted wanted) {
+  const auto may_stand = [&](const RuleType& type) {
+    return type.use != wanted.other() && type.name != "value" &&
+           !(for_field_ && (type.name == "of_materials" || type.name == "components"));
+  };
+  const RuleType* type = find_fraction_rule(member.key);
+  if (type && may_stand(*type)) return type;
+  std::vector<std::string> names;
+  for (const RuleType& known : fraction_rules()) {
+    if (may_stand(known)) names.push_back(known.name);
+  }
+  std::string message =
+      "there is no rule '" + member.key + "' here" + did_you_mean(member.key, names);
+  if (message.back() != '?') message += "; accepted are " + list_of(names);
+  error_at_key(place, member, message);
+  return nullptr;
+}
+
 std::optional<std::vector<RuleValue>> RuleReader::rule_values(
     const JsonPlace& place, const std::string& owner, const std::vector<RuleParameter>& infos,
     Wanted wanted) {
   if (!object(place, "an object of the parameters of " + owner)) return std::nullopt;
   std::vector<std::string> accepted;
   for (const RuleParameter& p : infos) {
-    for (const std::string& key : keys_of(p, wanted.components)) accepted.push_back(key);
+    for (const std::string& key : keys_of(p, wanted.shape)) accepted.push_back(key);
   }
   const size_t before = errors.size();
   check_keys(place, accepted);
@@ -138,7 +164,7 @@ std::optional<std::vector<RuleValue>> RuleReader::rule_values(
   for (const RuleParameter& p : infos) {
     std::optional<JsonPlace> given;
     std::string named;
-    for (const std::string& key : keys_of(p, wanted.components)) {
+    for (const std::string& key : keys_of(p, wanted.shape)) {
       const auto found = place.find(key);
       if (found && given) error(*found, "give either 'material' or 'fractions', not both");
       if (found) given = found;
@@ -184,9 +210,11 @@ RuleValue RuleReader::rule_value(const JsonPlace& place, const RuleParameter& pa
     case RuleParameterType::fractions:
       return as_value(nested(place, wanted));
     case RuleParameterType::shares:
-      return material_members(place, true);
     case RuleParameterType::functions:
-      return material_members(place, false);
+    case RuleParameterType::functions_or_rest:
+      return whole_value(place, parameter.type);
+    case RuleParameterType::named_values:
+      return named_values(place, *wanted.shape);
     case RuleParameterType::records:
       return records(place, parameter, wanted);
     case RuleParameterType::values:
@@ -209,7 +237,8 @@ RuleValue RuleReader::records(const JsonPlace& place, const RuleParameter& param
   return all;
 }
 
-RuleValue RuleReader::material_members(const JsonPlace& place, bool shares) {
+RuleValue RuleReader::whole_value(const JsonPlace& place, RuleParameterType type) {
+  const bool shares = type == RuleParameterType::shares;
   const char* what = shares ? "a number" : "a field or a number";
   if (!object(place, std::string("an object with ") + what + " for each material")) return {};
   const size_t before = errors.size();
@@ -222,6 +251,8 @@ RuleValue RuleReader::material_members(const JsonPlace& place, bool shares) {
     if (shares) {
       const auto read = number(inside, "the share");
       if (read) numbers.push_back({member.key, *read});
+    } else if (type == RuleParameterType::functions_or_rest && is_rest(*inside.value)) {
+      functions.push_back({member.key, Field()});
     } else {
       functions.push_back({member.key, field_or_number(inside)});
       good = good && functions.back().second;
@@ -230,6 +261,35 @@ RuleValue RuleReader::material_members(const JsonPlace& place, bool shares) {
   if (errors.size() != before || !good) return {};
   if (shares) return numbers;
   return functions;
+}
+
+RuleValue RuleReader::named_values(const JsonPlace& place, ValueShape& shape) {
+  if (!object(place, "an object with a field or a number for each component")) return {};
+  const size_t before = errors.size();
+  MaterialFunctions values;
+  std::vector<std::string> names;
+  bool good = true;
+  for (const JsonMember& member : place.value->members) {
+    if (!is_component_name(member.key)) {
+      error_at_key(
+          place, member,
+          "'" + member.key + "' cannot name a component; letters, digits and _ are accepted");
+    }
+    names.push_back(member.key);
+    values.push_back({member.key, field_or_number(place.member(member))});
+    good = good && values.back().second;
+  }
+  if (errors.size() != before || !good) return {};
+  if (shape.components == 0) shape = {names.size(), names};
+  std::vector<std::string> here = names, others = shape.names;
+  std::sort(here.begin(), here.end());
+  std::sort(others.begin(), others.end());
+  if (here != others) {
+    error(place, "found the components " + list_of(names) + " where others are " +
+                     (others.empty() ? "without names" : list_of(shape.names)));
+    return {};
+  }
+  return values;
 }
 
 }  // namespace sardf

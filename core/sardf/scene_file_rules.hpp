@@ -6,6 +6,13 @@
 
 namespace sardf {
 
+/// What the parts of a value have in common: how many components, 0 while that is not known yet,
+/// and their names if they have any.
+struct ValueShape {
+  size_t components = 0;
+  std::vector<std::string> names;
+};
+
 class RuleReader : public FieldReader {
  public:
   using FieldReader::FieldReader;
@@ -14,23 +21,23 @@ class RuleReader : public FieldReader {
 
   /// A material's name or {rule: ...}; empty where it is wrong.
   Fractions fractions(const JsonPlace& place);
-  /// A field, a number, a list of these, or {rule: ...}. `components` is how many there must be,
-  /// 0 while that is not known yet.
-  Fractions value(const JsonPlace& place, size_t& components);
+  /// A field, a number, a list of these, or {rule: ...}, of a shape that the first part decides.
+  Fractions value(const JsonPlace& place, ValueShape& shape);
 
  protected:
   RulePointer value_rule(const JsonPlace& place) override;
 
  private:
-  // What a rule is read for: components is nullptr where it gives fractions.
+  // What a rule is read for: shape is nullptr where it gives fractions.
   struct Wanted {
-    size_t* components;
-    RuleUse other() const { return components ? RuleUse::fractions : RuleUse::values; }
+    ValueShape* shape;
+    RuleUse other() const { return shape ? RuleUse::fractions : RuleUse::values; }
   };
 
   Fractions nested(const JsonPlace& place, Wanted wanted);
   Fractions rule(const JsonPlace& place, Wanted wanted);
-  Fractions constant_value(const JsonPlace& place, size_t& components);
+  const RuleType* known_rule(const JsonPlace& place, const JsonMember& member, Wanted wanted);
+  Fractions constant_value(const JsonPlace& place, ValueShape& shape);
   std::optional<std::vector<RuleValue>> rule_values(const JsonPlace& place,
                                                     const std::string& owner,
                                                     const std::vector<RuleParameter>& infos,
@@ -38,9 +45,12 @@ class RuleReader : public FieldReader {
   RuleValue rule_value(const JsonPlace& place, const RuleParameter& parameter, Wanted wanted,
                        const Field& feature);
   RuleValue records(const JsonPlace& place, const RuleParameter& parameter, Wanted wanted);
-  RuleValue material_members(const JsonPlace& place, bool shares);
+  RuleValue whole_value(const JsonPlace& place, RuleParameterType type);
+  RuleValue named_values(const JsonPlace& place, ValueShape& shape);
   bool check_material(const std::string& name, const JsonPlace* place, const JsonPlace* object,
                       const JsonMember* member);
+
+  bool for_field_ = false;  // a rule inside a field, which knows no scene's fractions
 };
 
 /// The keys that a parameter may have in a file: "fractions" may be "material", or "value".

@@ -263,8 +263,7 @@ class SceneWriter {
     const auto* shares = std::get_if<Shares>(&rule.arguments[0]);
     if (shares && shares->size() == 1) return JsonValue::of((*shares)[0].first);
     JsonValue object = JsonValue::object();
-    const RuleParameterType first = rule.type->parameters[0].type;
-    if (first == RuleParameterType::shares || first == RuleParameterType::functions) {
+    if (has_whole_value(*rule.type)) {
       object.add(rule.type->name, rule_value(rule.arguments[0]));
     } else {
       object.add(rule.type->name, rule_values(rule.type->parameters, rule.arguments));
@@ -316,9 +315,17 @@ class SceneWriter {
       for (const auto& [name, share] : *shares) object.add(name, JsonValue::of(share));
     }
     if (const auto* functions = std::get_if<MaterialFunctions>(&value)) {
-      for (const auto& [name, function] : *functions) object.add(name, field_or_number(function));
+      for (const auto& [name, function] : *functions) object.add(name, function_or_rest(function));
     }
     return object;
+  }
+
+  // The word "rest" is no field's name here.
+  JsonValue function_or_rest(const Field& function) const {
+    if (!function) return JsonValue::of(std::string("rest"));
+    JsonValue written = field_or_number(function);
+    const bool misread = written.is(JsonValue::Type::string) && written.text == "rest";
+    return misread ? JsonValue::of(std::string("=rest")) : written;
   }
 
   JsonValue attributes() {
@@ -328,6 +335,10 @@ class SceneWriter {
       JsonValue inside = JsonValue::object();
       inside.add("value", a.rule ? fractions(a.rule) : component_values(a.components));
       if (!a.unit.empty()) inside.add("unit", JsonValue::of(a.unit));
+      if (a.unit_vector) {
+        inside.add("unit_vector", JsonValue::of(true));
+        if (a.fallback != Attribute().fallback) inside.add("fallback", axis_json(a.fallback));
+      }
       object.add(a.name, std::move(inside));
     }
     writing_values_ = false;

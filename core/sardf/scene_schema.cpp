@@ -164,19 +164,25 @@ JsonValue parameters_schema(const std::vector<ParameterInfo>& infos) {
   return closed(properties, required);
 }
 
+// Where the first parameter is a field, a list of fields or a rule, it may stand alone.
+JsonValue with_short_form(const JsonValue& parameters, const ParameterInfo& first) {
+  switch (first.type) {
+    case ParameterType::field:
+      return any_of({parameters, object({{"type", text("string")}})});
+    case ParameterType::fields:
+    case ParameterType::rule:
+      return any_of({parameters, of_type(first.type, Range::any, first.at_least)});
+    default:
+      return parameters;
+  }
+}
+
 JsonValue field_schema() {
   JsonValue properties = JsonValue::object();
   for (const Constructor& c : constructors()) {
     JsonValue parameters = parameters_schema(c.parameters);
     parameters.add("description", text(c.doc));
-    const bool takes_field =
-        !c.parameters.empty() && (c.parameters[0].type == ParameterType::field ||
-                                  c.parameters[0].type == ParameterType::fields);
-    if (takes_field) {
-      const JsonValue first = of_type(c.parameters[0].type, Range::any, c.parameters[0].at_least);
-      const bool single = c.parameters[0].type == ParameterType::field;
-      parameters = any_of({parameters, single ? object({{"type", text("string")}}) : first});
-    }
+    if (!c.parameters.empty()) parameters = with_short_form(parameters, c.parameters[0]);
     properties.add(c.name, parameters);
   }
   JsonValue name =
@@ -219,7 +225,10 @@ JsonValue rule_parameter_schema(const RuleParameter& info, bool of_values) {
     case RuleParameterType::shares:
       return map_of(number(Range::non_negative));
     case RuleParameterType::functions:
+    case RuleParameterType::functions_or_rest:  // the word "rest" is text, as a name is
       return map_of(reference("field_or_number"));
+    case RuleParameterType::named_values:
+      return map_of(reference("field_or_number"), "^[A-Za-z0-9_]+$");
     case RuleParameterType::records:
       return list_of(rule_parameters_schema(info.record, of_values), info.at_least);
     case RuleParameterType::values:
@@ -257,10 +266,9 @@ JsonValue rules_schema(bool of_values) {
   for (const RuleType& type : fraction_rules()) {
     const RuleUse other = of_values ? RuleUse::fractions : RuleUse::values;
     if (type.use == other || type.name == "value") continue;
-    const RuleParameterType first = type.parameters[0].type;
-    const bool whole = first == RuleParameterType::shares || first == RuleParameterType::functions;
-    JsonValue parameters = whole ? rule_parameter_schema(type.parameters[0], of_values)
-                                 : rule_parameters_schema(type.parameters, of_values);
+    JsonValue parameters = has_whole_value(type)
+                               ? rule_parameter_schema(type.parameters[0], of_values)
+                               : rule_parameters_schema(type.parameters, of_values);
     parameters.add("description", text(type.doc));
     properties.add(type.name, parameters);
   }
@@ -301,8 +309,10 @@ JsonValue definitions() {
 }
 
 JsonValue attribute_schema() {
-  const JsonValue properties =
-      object({{"value", reference("value")}, {"unit", object({{"type", text("string")}})}});
+  const JsonValue properties = object({{"value", reference("value")},
+                                       {"unit", object({{"type", text("string")}})},
+                                       {"unit_vector", object({{"type", text("boolean")}})},
+                                       {"fallback", reference("axis")}});
   const JsonValue components = list_of(reference("field_or_number"), 1);
   return any_of({object({{"type", list({text("number"), text("string")})}}), components,
                  closed(properties, {"value"})});

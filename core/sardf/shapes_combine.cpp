@@ -131,11 +131,4 @@ Expression BlendError::expression() const {
   return field.expression() - without_blends(field.expression());
 }
 
-Expression Boundary::expression() const { return abs(solid.expression()); }
-
-Quality Boundary::quality() const {
-  const Exactness how = worse(solid.quality().inside, solid.quality().outside);
-  return {how, how};
-}
-
 }  // namespace sardf

@@ -101,18 +101,6 @@ struct Shell {
   Quality quality() const;
 };
 
-struct Boundary {
-  static constexpr const char *name = "boundary", *group = "feature",
-                              *doc = "The distance to a solid's surface, from either side.";
-  Field solid;
-  template <class V>
-  static void parameters(V& v) {
-    v(field_parameter("the solid", "solid"), &Boundary::solid);
-  }
-  Expression expression() const;
-  Quality quality() const;
-};
-
 struct WithBlend {
   static constexpr const char *name = "with_blend", *group = "boolean",
                               *doc =
@@ -144,7 +132,7 @@ struct BlendError {
   Quality quality() const { return {}; }
 };
 
-using CombineShapes = OpList<Union, Intersection, Difference, Complement, WithBlend, Offset, Shell,
-                             BlendError, Boundary>;
+using CombineShapes =
+    OpList<Union, Intersection, Difference, Complement, WithBlend, Offset, Shell, BlendError>;
 
 }  // namespace sardf

@@ -101,8 +101,18 @@ class Variant:
     def quantities_of_attribute(self, name: str) -> list[Quantity]:
         """One quantity for a number, one for each component of a vector."""
         evaluate = choose("attribute", name, self.scene.attributes)
-        shape = np.shape(evaluate(np.zeros((1, 3))))
+        sample = evaluate(np.zeros((1, 3)))
         label = name + unit_of(self.scene, name)
+        if isinstance(sample, dict):
+            return [
+                Quantity(
+                    self.named(f"{name}_{component}"), "attribute", label,
+                    lambda points, component=component: evaluate(points)[component],
+                    ("attribute", name), self.scene,
+                )
+                for component in sample
+            ]  # fmt: skip
+        shape = np.shape(sample)
         if len(shape) == 1:
             return [
                 Quantity(

@@ -110,7 +110,7 @@ void write_povray(const Scene& scene, const std::string& path, const std::string
   if (!render.empty()) povray::find_povray();
   PythonProgress progress(std::move(callable));
   progress.run([&](const Progress& report) {
-    povray::write_files(scene, files);
+    povray::write_files(scene, files, report);
     if (!render.empty()) povray::render_files(files, render, report);
     return true;
   });
@@ -187,7 +187,9 @@ void bind_scenes(py::module_& m) {
       .def("povray", &write_povray, py::arg("path"), py::arg("render") = "",
            py::arg("camera") = py::none(), py::arg("look") = "shaded", py::arg("width") = 640,
            py::arg("height") = 480, py::arg("progress") = py::none(),
-           "Writes path (.pov) and the .inc beside it, for POV-Ray 3.7; renders them to `render` "
+           "Writes path (.pov), the .inc beside it, and density files (.df3) of what has no "
+           "formula, "
+           "whose errors the .inc states, for POV-Ray 3.7; renders them to `render` "
            "(.exr or .png) unless it is empty. camera: as camera() gives it; look: shaded, flat "
            "(the colours alone) or normals.")
       .def("with_blend", &with_blend, py::arg("blend"),

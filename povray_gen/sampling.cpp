@@ -137,7 +137,8 @@ Sampling sample_operations(std::span<const Expression> expressions, const Boundi
         uses.operation, std::move(result.samples), result.error, file));
     by[key_of(*uses.operation)] = out.functions.back();
   }
-  out.expressions = replaced(expressions, order, by);
+  work.stage(1);
+  work.run(1, 1, [&](size_t, size_t) { out.expressions = replaced(expressions, order, by); });
   return out;
 }
 

@@ -1,5 +1,6 @@
 #include "povray_gen/scene_files.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
 
@@ -30,6 +31,9 @@ std::vector<std::string> write_files(const Scene& scene, const SceneFiles& files
     throw Error("the output must end in .pov; the functions go into an .inc file beside it",
                 files.path);
   }
+  if (files.samples < 8 || files.samples > 512) {
+    throw Error("samples is " + std::to_string(files.samples) + "; 8 to 512 is accepted");
+  }
   const SceneDescription& d = scene.description();
   PovrayScene text;
   const std::string stem = fs::path(files.path).stem();
@@ -48,6 +52,7 @@ std::vector<std::string> write_files(const Scene& scene, const SceneFiles& files
   const fs::path include = fs::path(files.path).replace_extension(".inc");
   SamplingOptions sampling;
   sampling.progress = progress;
+  sampling.most_samples = std::pow(files.samples, 3);
   const SceneText made = scene_text(text, include.filename(), sampling);
   std::vector<std::unique_ptr<OutputFile>> written;
   const auto begin_file = [&](const fs::path& path) -> OutputFile& {

@@ -55,6 +55,11 @@ void add_povray(CLI::App& app) {
   command->add_option("--height", options->files.height, "Pixels")
       ->check(CLI::Range(8, 16384))
       ->capture_default_str();
+  command
+      ->add_option("--samples", options->files.samples,
+                   "What has no formula is sampled at up to this number of points, cubed")
+      ->check(CLI::Range(8, 512))
+      ->capture_default_str();
   command->callback([options] { write_and_render(*options); });
 }
 

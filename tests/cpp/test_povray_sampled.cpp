@@ -235,6 +235,27 @@ TEST(PovraySamples, OfNearestPointsAreRightAwayFromWhereTheyJump) {
   }
 }
 
+TEST(PovraySamples, OfJumpsAreNotRefinedInVain) {
+  const auto set = std::make_shared<TestPoints>("dots", three_points);
+  const Expression exact = call(nearest_operation(set, 0), {X, Y, Z});
+  const SceneText text = povray::scene_text(scene_with({{"near", exact}}), "part.inc");
+  const size_t samples = text.sampled.at(0)->samples().grid().size();
+  EXPECT_LT(samples, 2200000u);
+  EXPECT_GT(samples, 1900000u) << "a jump lies within 1/125 of the box";
+}
+
+TEST(PovraySamples, MayBeTheInputsOfOthers) {
+  const Expression wave = call(std::make_shared<TestWave>(2), {X, Y});
+  const Expression exact = call(points_distance(), {X, wave, Z});
+  const PovrayScene scene = scene_with({{"near", exact}});
+  const SceneText text = povray::scene_text(scene, "part.inc", coarse());
+  ASSERT_EQ(text.sampled.size(), 2u);
+  const std::vector<Vec3> points = random_points(scene.bounds, 1000);
+  // A distance hands its inputs' errors on as they are.
+  EXPECT_LE(largest_difference(exact, points, in_povray(text, "part_near", points)),
+            text.sampled[0]->error().proven + text.sampled[1]->error().proven);
+}
+
 TEST(PovraySamples, AreDescribedInTheIncludeFile) {
   const SceneText text =
       povray::scene_text(scene_with({{"near", distance_to_points()}}), "part.inc", coarse());

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "error_of.hpp"
 #include "povray_gen/scene_files.hpp"
 #include "povray_gen/scene_text.hpp"
 #include "povray_harness.hpp"
@@ -208,8 +209,19 @@ TEST_F(PovraySampledFiles, ReplaceThoseOfAnEarlierRunAndAreFoundByPovray) {
   EXPECT_GT(size(0), 30);
   EXPECT_EQ(size(2), 1);
   EXPECT_EQ(bytes.size(), size_t(6 + 4 * size(0) * size(1) * size(2)));
+  const size_t last = size_t(6 + 4 * (size(0) - 1));
+  EXPECT_EQ(bytes.substr(last, 4), bytes.substr(last - 4, 4))
+      << "behind the last sample POV-Ray goes on with the first";
   povray::render_files(files_, folder_ / "part.exr", {});
   EXPECT_TRUE(fs::exists(folder_ / "part.exr"));
+}
+
+TEST_F(PovraySampledFiles, HaveTheNumberOfSamplesThatIsAskedFor) {
+  files_.samples = 8;
+  EXPECT_THAT(povray::write_files(*scene_, files_)[0], testing::StartsWith("wave: 21 x 21 x 1 "));
+  files_.samples = 7;
+  EXPECT_THAT(error_of([&] { povray::write_files(*scene_, files_); }),
+              testing::HasSubstr("samples is 7; 8 to 512 is accepted"));
 }
 
 TEST_F(PovraySampledFiles, AppearOnlyWhenAllAreComplete) {

@@ -26,6 +26,9 @@ class FunctionPrinter {
   void declare(const std::string& name, const Terms& terms, int root, int inputs,
                InputNames input_names);
 
+  /// Adds text that declares what functions after it call.
+  void insert(const std::string& text) { text_ += text; }
+
   const std::string& text() const { return text_; }
 
  private:

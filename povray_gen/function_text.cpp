@@ -12,6 +12,33 @@ namespace {
 
 // A call of a helper is no shorter than this many operators.
 constexpr int inlined_operations = 3;
+constexpr size_t comment_width = 95;
+
+InputNames input_names(const OperationInfo& info) {
+  const bool of_space =
+      info.kind == Kind::solid || info.kind == Kind::plane || info.kind == Kind::feature;
+  return of_space ? InputNames::coordinates : InputNames::parameters;
+}
+
+// What a reader has to know about samples, in lines of comment.
+std::string comment_of(const SampledFunction& sampled) {
+  const std::array<Interval, 3>& box = sampled.samples().grid().box;
+  std::string text = sampled.description() + ". That holds for inputs";
+  for (int k = 0; k < sampled.info().arity; ++k) {
+    text +=
+        (k ? ", " : " ") + number_text(box[size_t(k)].lo) + " to " + number_text(box[size_t(k)].hi);
+  }
+  text += "; others are moved to the nearest of these.";
+  std::string out;
+  for (size_t begin = 0; begin < text.size();) {
+    size_t end = text.size();
+    if (end - begin > comment_width) end = text.rfind(' ', begin + comment_width);
+    if (end == std::string::npos || end <= begin) end = text.size();
+    out += "// " + text.substr(begin, end - begin) + "\n";
+    begin = end + 1;
+  }
+  return out;
+}
 
 bool is_operation(const Node* node) { return node->type == Node::Type::operation; }
 
@@ -160,24 +187,10 @@ int FunctionWriter::add_guarded_call(Terms& terms, const Node& node, std::span<c
 int FunctionWriter::add_call(Terms& terms, const Operation& operation,
                              std::span<const int> inputs) {
   const OperationInfo& info = operation.info();
-  if (!operation.has_formula()) {
-    throw Error("'" + info.name + "' has no formula that POV-Ray could evaluate");
-  }
   const auto [known, added] = operations_.try_emplace({info.name, operation.numbers()});
   if (added) {
-    Terms own;
-    std::vector<int> own_inputs;
-    for (int i = 0; i < info.arity; ++i) own_inputs.push_back(own.input(i));
-    Trace trace(info.arity);
-    operation.record(trace);
-    const int root = own.append(trace, own_inputs);
-    if (own.operations(root, inlined_operations + 1) > inlined_operations) {
-      const bool of_space =
-          info.kind == Kind::solid || info.kind == Kind::plane || info.kind == Kind::feature;
-      known->second = names_.numbered(info.name);
-      printer_.declare(known->second, own, root, info.arity,
-                       of_space ? InputNames::coordinates : InputNames::parameters);
-    }
+    const auto* sampled = dynamic_cast<const SampledFunction*>(&operation);
+    known->second = sampled ? declare_samples(*sampled) : declare_operation(operation);
   }
   if (!known->second.empty()) {
     return terms.apply(known->second, std::vector<int>(inputs.begin(), inputs.end()));
@@ -185,6 +198,53 @@ int FunctionWriter::add_call(Terms& terms, const Operation& operation,
   Trace trace(info.arity);
   operation.record(trace);
   return terms.append(trace, inputs);
+}
+
+// The function's name, or "" if its text is as short as a call.
+std::string FunctionWriter::declare_operation(const Operation& operation) {
+  const OperationInfo& info = operation.info();
+  if (!operation.has_formula()) {
+    throw Error("'" + info.name + "' has no formula that POV-Ray could evaluate");
+  }
+  Terms own;
+  std::vector<int> own_inputs;
+  for (int i = 0; i < info.arity; ++i) own_inputs.push_back(own.input(i));
+  Trace trace(info.arity);
+  operation.record(trace);
+  const int root = own.append(trace, own_inputs);
+  if (own.operations(root, inlined_operations + 1) <= inlined_operations) return "";
+  const std::string name = names_.numbered(info.name);
+  printer_.declare(name, own, root, info.arity, input_names(info));
+  return name;
+}
+
+// Sample i of n lies at i / n in a density file. Outside of [0, 1) that is 0: inputs are clamped.
+std::string FunctionWriter::declare_samples(const SampledFunction& sampled) {
+  const Samples& samples = sampled.samples();
+  const SampleGrid& grid = samples.grid();
+  const std::string name = names_.numbered(sampled.exact().info().name);
+  const std::string file = names_.unique(name + "_samples");
+  printer_.insert(comment_of(sampled) + "#declare " + file +
+                  " = function {\n  pattern { density_file df3 \"" + sampled.file() +
+                  "\" interpolate 1 }\n}\n");
+  Terms own;
+  for (int i = 0; i < sampled.info().arity; ++i) own.input(i);
+  std::vector<int> places;
+  for (int k = 0; k < 3; ++k) {
+    if (!grid.varies(k)) {
+      places.push_back(own.number(0));
+      continue;
+    }
+    const int from_first = own.apply("-", {own.input(k), own.number(grid.box[size_t(k)].lo)});
+    const int place = own.apply("*", {from_first, own.number(1 / (grid.step(k) * grid.stored(k)))});
+    const double last = double(grid.counts[k] - 1) / grid.stored(k);
+    places.push_back(
+        own.apply("min", {own.apply("max", {place, own.number(0)}), own.number(last)}));
+  }
+  const int scaled = own.apply("*", {own.number(samples.factor()), own.apply(file, places)});
+  const int root = own.apply("+", {own.number(samples.offset()), scaled});
+  printer_.declare(name, own, root, sampled.info().arity, input_names(sampled.info()));
+  return name;
 }
 
 }  // namespace sardf::povray

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "povray_gen/function_printer.hpp"
+#include "povray_gen/sampled_function.hpp"
 #include "sardf/graph.hpp"
 
 namespace sardf::povray {
@@ -24,7 +25,7 @@ struct NamedExpression {
 /// as short as a call of it would be; where a cheap bound shows that a costly input of a union or
 /// difference does not count, the input is not evaluated. A function calls that of another named
 /// expression where nothing inside that one is also needed outside of it; else it computes the
-/// shared parts once.
+/// shared parts once. Sampled functions (sampling.hpp) read their density files.
 class FunctionWriter {
  public:
   explicit FunctionWriter(Names& names) : names_(names), printer_(names) {}
@@ -45,6 +46,8 @@ class FunctionWriter {
   int add_guarded_call(Terms& terms, const Node& node, std::span<const int> inputs, int costly,
                        const std::function<int(const Expression&)>& term_of);
   int add_call(Terms& terms, const Operation& operation, std::span<const int> inputs);
+  std::string declare_operation(const Operation& operation);
+  std::string declare_samples(const SampledFunction& sampled);
 
   Names& names_;
   FunctionPrinter printer_;

@@ -1,6 +1,8 @@
 #include "povray_gen/scene_files.hpp"
 
+#include <cmath>
 #include <filesystem>
+#include <memory>
 
 #include "povray_gen/run.hpp"
 #include "povray_gen/scene_text.hpp"
@@ -23,10 +25,14 @@ Look look_of(const std::string& name) {
 
 }  // namespace
 
-void write_files(const Scene& scene, const SceneFiles& files) {
+std::vector<std::string> write_files(const Scene& scene, const SceneFiles& files,
+                                     const Progress& progress) {
   if (!files.path.ends_with(".pov")) {
     throw Error("the output must end in .pov; the functions go into an .inc file beside it",
                 files.path);
+  }
+  if (files.samples < 8 || files.samples > 512) {
+    throw Error("samples is " + std::to_string(files.samples) + "; 8 to 512 is accepted");
   }
   const SceneDescription& d = scene.description();
   PovrayScene text;
@@ -44,9 +50,24 @@ void write_files(const Scene& scene, const SceneFiles& files) {
   text.look = look_of(files.look);
   text.stated_lipschitz = d.stated_lipschitz;
   const fs::path include = fs::path(files.path).replace_extension(".inc");
-  const SceneText made = scene_text(text, include.filename());
-  write_file(include, made.include);
-  write_file(files.path, made.scene);
+  SamplingOptions sampling;
+  sampling.progress = progress;
+  sampling.most_samples = std::pow(files.samples, 3);
+  const SceneText made = scene_text(text, include.filename(), sampling);
+  std::vector<std::unique_ptr<OutputFile>> written;
+  const auto begin_file = [&](const fs::path& path) -> OutputFile& {
+    written.push_back(std::make_unique<OutputFile>(path));
+    return *written.back();
+  };
+  std::vector<std::string> sentences;
+  for (const SampledPointer& sampled : made.sampled) {
+    sampled->samples().write_to(begin_file(include.parent_path() / sampled->file()));
+    sentences.push_back(sampled->description());
+  }
+  begin_file(include).write(made.include);
+  begin_file(files.path).write(made.scene);
+  for (const auto& file : written) file->commit();
+  return sentences;
 }
 
 void render_files(const SceneFiles& files, const std::string& image, const Progress& progress,

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "sardf/camera.hpp"
 #include "sardf/progress.hpp"
@@ -15,11 +16,18 @@ struct SceneFiles {
   std::string look = "shaded";  // shaded, flat, normals
   Camera camera;
   int width = 640, height = 480;
+  /// What has no formula is sampled at no more points than a cube with so many along each edge has:
+  /// 8 to 512. 256 are 64 MiB for each operation.
+  int samples = 256;
 };
 
-/// Writes path and the .inc beside it. Throws Error for a path that does not end in .pov, an
-/// unknown look, or a bound that is not finite; Failure when a file cannot be written.
-void write_files(const Scene& scene, const SceneFiles& files);
+/// Writes path, the .inc beside it and, for operations without a formula, density files; they
+/// appear when all of them are complete. Returns a sentence for each density file: which function,
+/// how many samples, how exact. Throws Error for a path that does not end in .pov, an unknown look,
+/// a number of samples that is not accepted, a bound that is not finite, and as scene_text does;
+/// Failure when a file cannot be written; Cancelled.
+std::vector<std::string> write_files(const Scene& scene, const SceneFiles& files,
+                                     const Progress& progress = {});
 
 /// Renders written files to `image`, .exr (linear) or .png. `check` receives the path of the
 /// picture before it is renamed and returns a complaint or "". Throws Error for another ending,

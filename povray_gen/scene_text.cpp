@@ -1,5 +1,7 @@
 #include "povray_gen/scene_text.hpp"
 
+#include <filesystem>
+
 #include "povray_gen/vector_text.hpp"
 #include "sardf/certify.hpp"
 #include "sardf/error.hpp"
@@ -32,13 +34,31 @@ struct Gradient {
   bool proven = true;
 };
 
-Gradient gradient_of(const PovrayScene& scene) {
+// `exact`: nothing in the solid is sampled. Else what the user states of the solid does not hold
+// for the interpolated samples.
+Gradient gradient_of(const PovrayScene& scene, bool exact) {
   const CertifiedBound bound = certified_lipschitz(Evaluator(scene.solid), scene.bounds);
   const std::optional<double>& stated = scene.stated_lipschitz;
+  if (bound.value < infinity && !exact) return {bound.value, true};
   if (stated && !(bound.value <= *stated)) return {*stated, false};
   if (bound.value < infinity) return {bound.value, true};
   throw Error("POV-Ray needs a bound of the solid's gradient, and '" + bound.infinite_at +
               "' has none; rewrite it, or state one: \"lipschitz\": L");
+}
+
+// Puts sampled functions in place of what has no formula.
+std::vector<SampledPointer> sample_fields(PovrayScene& scene, const std::string& stem,
+                                          const SamplingOptions& options) {
+  std::vector<Expression*> all{&scene.solid};
+  for (NamedExpression& field : scene.fields) all.push_back(&field.expression);
+  for (Expression& channel : scene.color) {
+    if (channel) all.push_back(&channel);
+  }
+  std::vector<Expression> exact;
+  for (const Expression* expression : all) exact.push_back(*expression);
+  const Sampling sampling = sample_operations(exact, scene.bounds, stem, options);
+  for (size_t i = 0; i < all.size(); ++i) *all[i] = sampling.expressions[i];
+  return sampling.functions;
 }
 
 void check_bounds(const BoundingBox& bounds) {
@@ -201,15 +221,18 @@ std::string camera_text(const Camera& camera, int width, int height) {
                  vector_text(view.direction)});
 }
 
-SceneText scene_text(const PovrayScene& scene, const std::string& include_name) {
-  check_bounds(scene.bounds);
+SceneText scene_text(const PovrayScene& exact_scene, const std::string& include_name,
+                     const SamplingOptions& sampling) {
+  check_bounds(exact_scene.bounds);
   if (include_name.find('"') != std::string::npos) {
     throw Error("POV-Ray cannot include a file whose name has a quotation mark", include_name);
   }
-  const Gradient gradient = gradient_of(scene);
+  SceneText out;
+  PovrayScene scene = exact_scene;
+  out.sampled = sample_fields(scene, std::filesystem::path(include_name).stem(), sampling);
+  const Gradient gradient = gradient_of(scene, scene.solid == exact_scene.solid);
   Names names(scene.title);
   const Identifiers ids(names);
-  SceneText out;
   out.prefix = names.prefix();
   out.max_gradient = gradient_margin * gradient.bound;
   out.proven = gradient.proven;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "povray_gen/function_text.hpp"
+#include "povray_gen/sampling.hpp"
 #include "sardf/camera.hpp"
 
 namespace sardf::povray {
@@ -29,7 +30,8 @@ struct PovrayScene {
   int height = 240;
   Look look = Look::shaded;
   Vec3 background{0.9, 0.92, 0.95};  ///< linear; shaded only, other looks have none and alpha 0
-  /// A bound of |grad solid| within the bounds that the user states where none can be proven.
+  /// A bound of |grad solid| within the bounds that the user states where none can be proven. That
+  /// of a solid with sampled functions in it, which are steeper, can always be.
   std::optional<double> stated_lipschitz;
 };
 
@@ -39,12 +41,15 @@ struct SceneText {
   std::string prefix;       ///< of all identifiers
   double max_gradient = 0;  ///< 1.02 × the bound
   bool proven = true;       ///< false: the bound is the stated one
+  /// Each must be written as its file() beside the others.
+  std::vector<SampledPointer> sampled;
 };
 
 /// The two files' texts; the scene includes `include_name`, a file of its own folder. Throws Error
 /// for a solid without finite Lipschitz bound, naming the operation at fault, where none is
-/// stated; for empty or unbounded bounds; and for what POV-Ray cannot evaluate.
-SceneText scene_text(const PovrayScene& scene, const std::string& include_name);
+/// stated; for empty or unbounded bounds; and for what POV-Ray cannot evaluate. Cancelled.
+SceneText scene_text(const PovrayScene& scene, const std::string& include_name,
+                     const SamplingOptions& sampling = {});
 
 /// The camera as POV-Ray reads it: vectors only, so that nothing is rounded or mirrored on the way.
 std::string camera_text(const Camera& camera, int width, int height);

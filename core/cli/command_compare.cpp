@@ -99,7 +99,8 @@ std::vector<std::function<void()>> jobs_of(const Options& options, const Size& s
         povray::SceneFiles files{item.folder / ("povray_" + look + ".pov"), look, camera,
                                  size.width, size.height};
         log.timed(item.name + ": POV-Ray, " + look, [&] {
-          povray::write_files(reference, files);
+          // Several jobs run at once: none shows how far it is.
+          povray::write_files(reference, files, [&](double) { return watch(0); });
           render_povray(files, item.folder / ("povray_" + look + ".exr"), watch);
         });
       });

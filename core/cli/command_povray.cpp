@@ -24,7 +24,9 @@ void write_and_render(Options& options) {
   options.files.camera = options.camera.empty()
                              ? scene_camera(scene, options.files.width, options.files.height)
                              : read_camera(options.camera);
-  povray::write_files(scene, options.files);
+  const std::vector<std::string> sampled =
+      povray::write_files(scene, options.files, terminal_progress("sampling"));
+  for (const std::string& sentence : sampled) std::cout << sentence << "\n";
   std::cout << options.files.path << "\n";
   if (options.image.empty()) return;
   render_povray(options.files, options.image, terminal_progress("rendering"));
@@ -38,7 +40,9 @@ void add_povray(CLI::App& app) {
       app.add_subcommand("povray", "Write the scene as POV-Ray functions; render it");
   const auto options = std::make_shared<Options>();
   options->scene.add_to(*command);
-  command->add_option("-o,--output", options->files.path, "part.pov; part.inc is written beside it")
+  command
+      ->add_option("-o,--output", options->files.path,
+                   "part.pov; part.inc is written beside it, and samples of what has no formula")
       ->required();
   command->add_option("--render", options->image, "Also render to this .exr (linear) or .png");
   command->add_option("--look", options->files.look, "shaded, flat or normals")
@@ -50,6 +54,11 @@ void add_povray(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--height", options->files.height, "Pixels")
       ->check(CLI::Range(8, 16384))
+      ->capture_default_str();
+  command
+      ->add_option("--samples", options->files.samples,
+                   "What has no formula is sampled at up to this number of points, cubed")
+      ->check(CLI::Range(8, 512))
       ->capture_default_str();
   command->callback([options] { write_and_render(*options); });
 }

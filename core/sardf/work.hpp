@@ -22,6 +22,9 @@ class Work {
     to_ = end;
   }
 
+  /// The share up to which loops report now.
+  double end() const { return to_; }
+
   /// body(first, last) over [0, n) in parts of `grain`, the same parts for any number of threads.
   template <class Body>
   void run(size_t n, size_t grain, const Body& body) {

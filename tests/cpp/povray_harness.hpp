@@ -7,6 +7,7 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -37,11 +38,13 @@ struct FunctionCall {
   std::vector<double> arguments;
 };
 
-/// The values of function calls as POV-Ray computes them. `declarations`: the functions' text.
-inline std::vector<double> evaluate_in_povray(const std::string& declarations,
-                                              const std::vector<FunctionCall>& calls,
-                                              std::string* messages = nullptr) {
+/// The values of function calls as POV-Ray computes them. `declarations`: the functions' text;
+/// `prepare` gets the folder to put other files into.
+inline std::vector<double> evaluate_in_povray(
+    const std::string& declarations, const std::vector<FunctionCall>& calls,
+    std::string* messages = nullptr, const std::function<void(const TestFolder&)>& prepare = {}) {
   const TestFolder folder;
+  if (prepare) prepare(folder);
   std::ofstream scene(folder / "scene.pov");
   scene << "#version 3.7;\nglobal_settings { assumed_gamma 1.0 }\n"
         << declarations << "#fopen OUT \"values.txt\" write\n";

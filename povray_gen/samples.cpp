@@ -1,0 +1,205 @@
+#include "povray_gen/samples.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sardf/error.hpp"
+
+namespace sardf::povray {
+
+namespace {
+
+constexpr double whole = 4294967295.0;  // what POV-Ray divides by
+// The least and the largest number are left out: a sum of weights may exceed 1 by its rounding.
+constexpr double levels = whole - 2;
+constexpr size_t rows_at_once = 64;
+constexpr size_t samples_at_once = 65536;
+
+}  // namespace
+
+std::array<int, 3> SampleGrid::position(size_t index) const {
+  const size_t nx = size_t(counts[0]), ny = size_t(counts[1]);
+  return {int(index % nx), int(index / nx % ny), int(index / nx / ny)};
+}
+
+size_t SampleGrid::index(const std::array<int, 3>& p) const {
+  return size_t(p[0]) + size_t(counts[0]) * (size_t(p[1]) + size_t(counts[1]) * size_t(p[2]));
+}
+
+Vec3 SampleGrid::place(const Vec3& at) const {
+  Vec3 out;
+  for (int k = 0; k < 3; ++k) out[k] = min(box[k].lo + at[k] * step(k), box[k].hi);
+  return out;
+}
+
+Vec3 SampleGrid::point(size_t index) const {
+  const std::array<int, 3> p = position(index);
+  return place({double(p[0]), double(p[1]), double(p[2])});
+}
+
+Samples::Samples(const SampleGrid& grid, std::span<const double> values, Work& work)
+    : grid_(grid), codes_(values.size()) {
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  low_ = *least;
+  scale_ = (*most - *least) / levels;
+  if (!(scale_ < infinity)) throw Error("values from -1e308 to 1e308 cannot be sampled");
+  work.run(values.size(), samples_at_once, [&](size_t first, size_t last) {
+    for (size_t i = first; i < last; ++i) {
+      const double level = scale_ > 0 ? std::round((values[i] - low_) / scale_) : 0;
+      codes_[i] = uint32_t(1 + std::clamp(level, 0.0, levels));
+    }
+  });
+  const double slack = 1e-15 * max(std::abs(*least), std::abs(*most));
+  range_ = {*least - slack, *most + slack};
+  bound_slopes(work);
+}
+
+double Samples::factor() const { return scale_ * whole; }
+
+// A partial derivative of a trilinear cell is a mean of the difference quotients along the cell's
+// four edges in that direction: it lies between them, and the largest ones bound the gradient.
+void Samples::bound_slopes(Work& work) {
+  const size_t nx = size_t(grid_.counts[0]);
+  const size_t rows = grid_.size() / nx;
+  std::vector<double> lengths(rows, 0);
+  std::vector<std::array<Interval, 3>> partials(rows);
+  const std::array<size_t, 3> stride{grid_.varies(0) ? size_t(1) : 0, grid_.varies(1) ? nx : 0,
+                                     grid_.varies(2) ? nx * size_t(grid_.counts[1]) : 0};
+  std::array<double, 3> quotient{};
+  for (int k = 0; k < 3; ++k) {
+    if (grid_.varies(k)) quotient[k] = scale_ / grid_.step(k);
+  }
+  work.run(rows, rows_at_once, [&](size_t first, size_t last) {
+    for (size_t row = first; row < last; ++row) {
+      const std::array<int, 3> at = grid_.position(row * nx);
+      if ((grid_.varies(1) && at[1] + 1 == grid_.counts[1]) ||
+          (grid_.varies(2) && at[2] + 1 == grid_.counts[2])) {
+        continue;  // the cells of the row before reach here
+      }
+      const size_t cells = grid_.varies(0) ? nx - 1 : 1;
+      for (size_t cell = row * nx; cell < row * nx + cells; ++cell) {
+        double squares = 0;
+        for (int k = 0; k < 3; ++k) {
+          if (stride[k] == 0) continue;
+          Interval change{infinity, -infinity};
+          for (size_t a : {size_t(0), stride[(k + 1) % 3]}) {
+            for (size_t b : {size_t(0), stride[(k + 2) % 3]}) {
+              const size_t from = cell + a + b;
+              const double d = double(codes_[from + stride[k]]) - double(codes_[from]);
+              change = {min(change.lo, d), max(change.hi, d)};
+            }
+          }
+          const Interval slope{change.lo * quotient[k], change.hi * quotient[k]};
+          partials[row][k] = hull(partials[row][k], slope);
+          squares += square(slope).hi;
+        }
+        lengths[row] = max(lengths[row], squares);
+      }
+    }
+  });
+  // Outside the box the function is constant: each enclosure holds 0 as well.
+  for (size_t row = 0; row < rows; ++row) {
+    steepest_ = max(steepest_, lengths[row]);
+    for (int k = 0; k < 3; ++k) partials_[k] = hull(partials_[k], partials[row][k]);
+  }
+  for (Interval& partial : partials_) {
+    partial = {rounded_down(partial.lo, 8), rounded_up(partial.hi, 8)};
+  }
+  steepest_ = rounded_up(std::sqrt(steepest_), 8);
+}
+
+double Samples::value(const Vec3& at, Vec3* gradient) const {
+  std::array<int, 3> cell{};
+  Vec3 t{};
+  std::array<bool, 3> inside{};
+  for (int k = 0; k < 3; ++k) {
+    if (!grid_.varies(k)) continue;
+    inside[k] = grid_.box[k].contains(at[k]);
+    const double place =
+        min(max((at[k] - grid_.box[k].lo) / grid_.step(k), 0.0), double(grid_.counts[k] - 1));
+    cell[k] = std::clamp(int(place), 0, grid_.counts[k] - 2);
+    t[k] = place - cell[k];
+  }
+  double sum = 0;
+  Vec3 slopes{};
+  for (int corner = 0; corner < 8; ++corner) {
+    std::array<int, 3> p = cell;
+    Vec3 weight, change{};
+    bool exists = true;
+    for (int k = 0; k < 3; ++k) {
+      const bool upper = corner >> k & 1;
+      if (upper && !grid_.varies(k)) exists = false;
+      p[k] += upper;
+      weight[k] = upper ? t[k] : 1 - t[k];
+      if (inside[k]) change[k] = (upper ? 1 : -1) / grid_.step(k);
+    }
+    if (!exists) continue;
+    const double level = double(codes_[grid_.index(p)]) - 1;
+    sum += weight[0] * weight[1] * weight[2] * level;
+    for (int k = 0; k < 3; ++k) {
+      slopes[k] += change[k] * weight[(k + 1) % 3] * weight[(k + 2) % 3] * level;
+    }
+  }
+  if (gradient) *gradient = scale_ * slopes;
+  return low_ + scale_ * sum;
+}
+
+// Zero where the function is linear along the axes.
+double Samples::bend(size_t index) const {
+  const std::array<int, 3> at = grid_.position(index);
+  double sum = 0;
+  size_t stride = 1;
+  for (int k = 0; k < 3; ++k) {
+    if (at[k] > 0 && at[k] + 1 < grid_.counts[k]) {
+      sum += std::abs(double(codes_[index - stride]) - 2 * double(codes_[index]) +
+                      double(codes_[index + stride]));
+    }
+    stride *= size_t(grid_.counts[k]);
+  }
+  return sum;
+}
+
+std::vector<size_t> Samples::most_bent(size_t count, Work& work) const {
+  const size_t nx = size_t(grid_.counts[0]);
+  std::vector<std::pair<double, size_t>> worst(grid_.size() / nx);
+  work.run(worst.size(), rows_at_once, [&](size_t first, size_t last) {
+    for (size_t row = first; row < last; ++row) {
+      worst[row] = {-1, 0};
+      for (size_t i = row * nx; i < (row + 1) * nx; ++i) {
+        const double here = bend(i);
+        if (here > worst[row].first) worst[row] = {here, i};
+      }
+    }
+  });
+  count = std::min(count, worst.size());
+  std::partial_sort(worst.begin(), worst.begin() + std::ptrdiff_t(count), worst.end(),
+                    std::greater<>());
+  std::vector<size_t> out;
+  for (size_t i = 0; i < count; ++i) out.push_back(worst[i].second);
+  return out;
+}
+
+// POV-Ray's format: three sizes of 16 bits, then the samples, all with the largest byte first.
+// Sample i lies at i / size, and behind the last one the first follows again: the layer added at
+// the end of each axis keeps that out of our box.
+void Samples::write_to(OutputFile& file) const {
+  std::string bytes;
+  for (int k = 0; k < 3; ++k) {
+    bytes += char(grid_.stored(k) >> 8);
+    bytes += char(grid_.stored(k));
+  }
+  for (int z = 0; z < grid_.stored(2); ++z) {
+    for (int y = 0; y < grid_.stored(1); ++y) {
+      for (int x = 0; x < grid_.stored(0); ++x) {
+        const uint32_t code =
+            codes_[grid_.index({std::min(x, grid_.counts[0] - 1), std::min(y, grid_.counts[1] - 1),
+                                std::min(z, grid_.counts[2] - 1)})];
+        for (int shift = 24; shift >= 0; shift -= 8) bytes += char(code >> shift);
+      }
+      file.write(bytes);
+      bytes.clear();
+    }
+  }
+}
+
+}  // namespace sardf::povray

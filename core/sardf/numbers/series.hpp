@@ -49,7 +49,7 @@ class Series {
   friend Series operator-(const Series& a) { return S(-1.0) * a; }
   friend Series operator*(const S& factor, const Series& a) {
     std::vector<S> c;
-    for (const S& each : a.c_) c.push_back(factor * each);
+    for (const S& each : a.c_) c.push_back(is_zero(each) ? each : factor * each);
     return {std::move(c), a.order_};
   }
   friend Series operator*(const Series& a, const Series& b) {

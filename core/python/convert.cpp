@@ -289,6 +289,7 @@ std::string docstring(const std::string& name, const std::string& doc,
     if (p.unit == Unit::angle) text += " (degrees)";
     if (p.range == Range::positive) text += "; positive";
     if (p.range == Range::non_negative) text += "; not negative";
+    if (p.range == Range::count) text += "; a whole number from 1";
   }
   return text;
 }

@@ -3,10 +3,12 @@
 #include "sardf/constructor_of.hpp"
 #include "sardf/faces.hpp"
 #include "sardf/ops.hpp"
+#include "sardf/shapes_calculus.hpp"
 #include "sardf/shapes_combine.hpp"
 #include "sardf/shapes_contour.hpp"
 #include "sardf/shapes_domain.hpp"
 #include "sardf/shapes_interpolation.hpp"
+#include "sardf/shapes_normalize.hpp"
 #include "sardf/shapes_transform.hpp"
 
 namespace sardf {
@@ -39,6 +41,8 @@ Registry listed() {
   TransformShapes::for_each(add_shape);
   DomainShapes::for_each(add_shape);
   InterpolationShapes::for_each(add_shape);
+  NormalizeShapes::for_each(add_shape);
+  CalculusShapes::for_each(add_shape);
   BlendList::for_each(
       [&]<class B>(std::type_identity<B>) { all.blends.push_back(blend_type_of<B>()); });
   return all;
@@ -61,9 +65,11 @@ constexpr double absurd = 1e100;
 void check_number(const ParameterInfo& p, double a) {
   const char* sizes = p.range == Range::positive       ? " a positive number"
                       : p.range == Range::non_negative ? " a number that is not negative"
+                      : p.range == Range::count        ? " a whole number from 1"
                                                        : " a finite number";
   if (!std::isfinite(a) || std::abs(a) > absurd || (p.range == Range::positive && !(a > 0)) ||
-      (p.range == Range::non_negative && !(a >= 0))) {
+      (p.range == Range::non_negative && !(a >= 0)) ||
+      (p.range == Range::count && !(a >= 1 && a == std::floor(a)))) {
     throw Error(p.name + " is " + number_text(a) + ";" + sizes +
                 (std::isfinite(a) && std::abs(a) > absurd ? " of magnitude up to 1e100" : "") +
                 " is accepted");
@@ -153,7 +159,7 @@ std::string type_name(ParameterType type) {
     case ParameterType::optional_field:
       return "a field";
     case ParameterType::fields:
-      return "a list of fields";
+      return "a list of fields or numbers";
     case ParameterType::sections:
       return "a list of objects such as {\"field\": \"contour\", \"z\": 2}";
     case ParameterType::rule:
@@ -166,10 +172,7 @@ std::string type_name(ParameterType type) {
 }
 
 int Constructor::variadic() const {
-  for (size_t i = 0; i < parameters.size(); ++i) {
-    if (parameters[i].type == ParameterType::fields) return int(i);
-  }
-  return -1;
+  return !parameters.empty() && parameters[0].type == ParameterType::fields ? 0 : -1;
 }
 
 const std::deque<Constructor>& constructors() { return registry().constructors; }

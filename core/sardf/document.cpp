@@ -46,7 +46,7 @@ std::string default_text(const Value& value) {
 
 std::string accepted_text(const std::string& type, Unit unit, Range range, int at_least) {
   const char* units[] = {"", ", scene units", ", degrees", ""};
-  const char* ranges[] = {"", ", > 0", ", ≥ 0"};
+  const char* ranges[] = {"", ", > 0", ", ≥ 0", ", whole, ≥ 1"};
   std::string text = type + ranges[size_t(range)] + units[size_t(unit)];
   if (at_least > 0) text += ", at least " + std::to_string(at_least);
   return text;
@@ -97,10 +97,13 @@ void add_functions(std::string& to) {
   to +=
       "\n## Functions of formulas\n\nBesides `+ - * / ^`, comparisons and `pi`. Angles are in "
       "radians.\n\n| function | |\n|---|---|\n| `length(a, b)`, `length(a, b, c)` | the length of "
-      "the vector |\n";
+      "the vector |\n| `at(f, a, b, c)` | f at the point (a, b, c) |\n| `dx(f)`, `dy(f)`, `dz(f)` "
+      "| the "
+      "derivative of f by x, y or z |\n";
   for (const std::string& name : all_functions()) {
-    if (name == "length") continue;
-    const OperationInfo& info = find_function(name)->info();
+    const OperationPointer function = find_function(name);
+    if (!function) continue;
+    const OperationInfo& info = function->info();
     const bool any_number = arguments_message(name, 5).empty();
     const char* arguments[] = {"", "a", "a, b", "a, b, c"};
     to += "| `" + name + "(" + arguments[info.arity] + (any_number ? ", ..." : "") + ")` | " +

@@ -161,7 +161,11 @@ class Parser {
     if (!problem.empty()) fail(opened.token, problem);
     const std::vector<Expression> arguments(values_.end() - std::ptrdiff_t(count), values_.end());
     values_.resize(values_.size() - count);
-    values_.push_back(apply_function(opened.token.text, arguments));
+    try {
+      values_.push_back(apply_function(opened.token.text, arguments));
+    } catch (const Error& error) {
+      fail(opened.token, error.message);
+    }
   }
 
   void check_function(const FormulaToken& token) const {

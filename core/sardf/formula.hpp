@@ -2,7 +2,8 @@
 //
 //   + - * / ^      ^ binds tighter than a minus sign before it and groups from the right
 //   < <= > >= == !=    1 where it holds, else 0
-//   functions of function_names(); min and max of two or more; length of two or three
+//   functions of function_names(); min and max of two or more; length of two or three;
+//                      at(f, a, b, c): f at another point; dx(f), dy(f), dz(f): its derivatives
 //   x y z pi, numbers, parameters, named fields
 #pragma once
 

@@ -5,6 +5,7 @@
 
 #include "sardf/arithmetic.hpp"
 #include "sardf/constructor.hpp"
+#include "sardf/derivative.hpp"
 #include "sardf/error.hpp"
 #include "sardf/formula.hpp"
 
@@ -57,12 +58,14 @@ Expression length_of(std::span<const Expression> v) {
   return v.size() == 2 ? length(v[0], v[1]) : function("length3", {v[0], v[1], v[2]});
 }
 
-// min, max, length and sqrt mean more than one operation; the rest is one operation each.
+// min, max, length and sqrt mean more than one operation, at and dx act on what their first
+// argument is made of; the rest is one operation each.
 struct Special {
   const char* name;
   size_t fewest, most;  // 0: no limit
 };
-constexpr Special specials[] = {{"min", 2, 0}, {"max", 2, 0}, {"length", 2, 3}};
+constexpr Special specials[] = {{"min", 2, 0}, {"max", 2, 0}, {"length", 2, 3}, {"at", 4, 4},
+                                {"dx", 1, 1},  {"dy", 1, 1},  {"dz", 1, 1}};
 
 const Special* find_special(const std::string& name) {
   for (const Special& special : specials) {
@@ -106,7 +109,7 @@ Expression apply_operator(const std::string& symbol, const Expression& a, const 
 bool is_function(const std::string& name) { return find_special(name) || find_function(name); }
 
 std::vector<std::string> all_functions() {
-  std::vector<std::string> names{"length"};
+  std::vector<std::string> names{"length", "at", "dx", "dy", "dz"};
   for (const std::string& name : function_names()) {
     if (name != "length2" && name != "length3") names.push_back(name);
   }
@@ -140,6 +143,8 @@ Expression apply_function(const std::string& name, std::span<const Expression> a
   if (name == "pow") return pow(arguments[0], arguments[1]);
   if (name == "multiply") return arguments[0] * arguments[1];
   if (name == "length") return length_of(arguments);
+  if (name == "at") return substitute(arguments[0], {arguments[1], arguments[2], arguments[3]});
+  if (name == "dx" || name == "dy" || name == "dz") return derivative(arguments[0], name[1] - 'x');
   const OperationPointer operation = find_function(name);
   if (!find_special(name)) return call(operation, arguments);
   Expression result = arguments[0];

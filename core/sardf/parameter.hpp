@@ -17,8 +17,8 @@ struct Axis {
 
 enum class Unit { none, length, angle, direction };
 
-/// What values are accepted beyond being finite.
-enum class Range { any, positive, non_negative };
+/// What values are accepted beyond being finite; a count is a whole number from 1.
+enum class Range { any, positive, non_negative, count };
 
 struct Parameter {
   const char* name;
@@ -40,6 +40,9 @@ constexpr Parameter positive_length(const char* name, const char* doc) {
 }
 constexpr Parameter required_length(const char* name, const char* doc) {
   return {name, doc, Unit::length, Range::any, true};
+}
+constexpr Parameter count_of(const char* name, const char* doc, bool required = false) {
+  return {name, doc, Unit::none, Range::count, required};
 }
 constexpr Parameter direction_of(const char* name, const char* doc) {
   return {name, doc, Unit::direction};

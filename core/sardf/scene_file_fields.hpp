@@ -23,7 +23,7 @@ class FieldReader : public ValueReader {
   /// A name, "=formula", or {constructor: parameters}; null where it is wrong.
   Field field(const JsonPlace& place) override;
   /// The same, or a number.
-  Field field_or_number(const JsonPlace& place);
+  Field field_or_number(const JsonPlace& place) override;
   /// The same where formulas may also use `name` for `meaning`.
   Field field_with(const JsonPlace& place, const std::string& name, const Field& meaning);
 

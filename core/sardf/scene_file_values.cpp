@@ -240,11 +240,11 @@ void ValueReader::check_keys(const JsonPlace& object, const std::vector<std::str
 }
 
 std::optional<std::vector<Field>> ValueReader::fields(const JsonPlace& place) {
-  if (!list(place, "a list of fields")) return std::nullopt;
+  if (!list(place, type_name(ParameterType::fields))) return std::nullopt;
   std::vector<Field> out;
   bool good = true;
   for (size_t i = 0; i < place.value->elements.size(); ++i) {
-    out.push_back(field(place.element(i)));
+    out.push_back(field_or_number(place.element(i)));
     good = good && out.back();
   }
   return good ? std::optional(std::move(out)) : std::nullopt;

@@ -65,6 +65,7 @@ class ValueReader {
 
  protected:
   virtual Field field(const JsonPlace& place) = 0;
+  virtual Field field_or_number(const JsonPlace& place) = 0;
   /// A rule that gives one number; null where it is wrong.
   virtual RulePointer value_rule(const JsonPlace& place) = 0;
   /// Runs f; an Error it throws is reported at the place.

@@ -170,7 +170,7 @@ class SceneWriter {
           } else if constexpr (std::is_same_v<T, BlendPointer>) {
             return blend_json(*a);
           } else if constexpr (std::is_same_v<T, std::vector<Field>>) {
-            return field_list(a);
+            return field_or_number_list(a);
           } else if constexpr (std::is_same_v<T, std::vector<PlaneSection>>) {
             JsonValue list = JsonValue::list();
             for (const PlaneSection& section : a) list.add(plane_section(section));
@@ -220,11 +220,15 @@ class SceneWriter {
     return list;
   }
 
+  JsonValue field_or_number_list(const std::vector<Field>& all) const {
+    JsonValue list = JsonValue::list();
+    for (const Field& f : all) list.add(field_or_number(f));
+    return list;
+  }
+
   JsonValue component_values(const std::vector<Field>& components) const {
     if (components.size() == 1) return field_or_number(components[0]);
-    JsonValue list = JsonValue::list();
-    for (const Field& f : components) list.add(field_or_number(f));
-    return list;
+    return field_or_number_list(components);
   }
 
   JsonValue materials() const {

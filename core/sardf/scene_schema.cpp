@@ -48,9 +48,10 @@ JsonValue tuple(const JsonValue& element, double n) {
 JsonValue formula() { return object({{"type", text("string")}, {"pattern", text("^=")}}); }
 
 JsonValue number(Range range) {
-  JsonValue made = object({{"type", text("number")}});
+  JsonValue made = object({{"type", text(range == Range::count ? "integer" : "number")}});
   if (range == Range::positive) made.add("exclusiveMinimum", JsonValue::of(0.0));
   if (range == Range::non_negative) made.add("minimum", JsonValue::of(0.0));
+  if (range == Range::count) made.add("minimum", JsonValue::of(1.0));
   return any_of({made, formula()});
 }
 
@@ -123,7 +124,7 @@ JsonValue of_type(ParameterType type, Range range, int at_least) {
     case ParameterType::optional_field:
       return reference("field");
     case ParameterType::fields:
-      return list_of(reference("field"), at_least);
+      return list_of(reference("field_or_number"), at_least);
     case ParameterType::sections:
       return list_of(closed(object({{"field", reference("field")}, {"z", number(Range::any)}}),
                             {"field", "z"}),

@@ -117,7 +117,8 @@ Value random_value(Random& r, const ParameterInfo& info, int depth) {
       return random_field(r, depth - 1);
     case ParameterType::fields: {
       std::vector<Field> fields;
-      for (int n = 1 + r.below(3); n > 0; --n) fields.push_back(random_field(r, depth - 1));
+      int n = info.at_least > 1 ? info.at_least : 1 + r.below(3);
+      for (; n > 0; --n) fields.push_back(random_field(r, depth - 1));
       return fields;
     }
     case ParameterType::sections: {

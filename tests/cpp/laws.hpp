@@ -76,6 +76,8 @@ class Random {
 
   double number(const Parameter& p) {
     if (p.range == Range::positive) return decades(-1, 0.7);
+    // Few, since what is counted may be expensive.
+    if (p.range == Range::count) return 1 + below(2);
     if (p.range == Range::non_negative) return chance(0.2) ? 0 : decades(-1, 0.7);
     return p.unit == Unit::angle ? uniform(-360, 360) : uniform(-4, 4);
   }

@@ -20,7 +20,7 @@ int record(const char* name, int a, int b = -1) {
 
 }  // namespace
 
-Trace::Trace(int inputs) : outer_(std::exchange(innermost, this)) {
+Trace::Trace(int inputs, Detail detail) : detail_(detail), outer_(std::exchange(innermost, this)) {
   for (int i = 0; i < inputs; ++i) add({.kind = TraceStep::Kind::input, .name = {}, .index = i});
 }
 
@@ -57,6 +57,28 @@ TextMask Text::compare(const char* name, Text a, Text b) { return {record(name, 
 
 Text Text::choose(TraceStep::Kind kind, TextMask mask, Text a, Text b) {
   return at(record(kind, "", {mask.step, a.step, b.step}));
+}
+
+namespace {
+
+bool differentiable() { return Trace::current().is_differentiable(); }
+
+}  // namespace
+
+Text freeze(Text a) { return differentiable() ? Text::call("freeze", a) : a; }
+
+Text smaller(Text a, Text b) { return Text::call(differentiable() ? "smaller" : "min", a, b); }
+
+Text larger(Text a, Text b) { return Text::call(differentiable() ? "larger" : "max", a, b); }
+
+Text length(Text a, Text b) {
+  if (differentiable()) return Text::call("length", a, b);
+  return sqrt(square(a) + square(b));
+}
+
+Text length(Text a, Text b, Text c) {
+  if (!differentiable()) return sqrt(square(a) + square(b) + square(c));
+  return Text::at(record(TraceStep::Kind::call, "length", {a.step, b.step, c.step}));
 }
 
 TextMask operator&&(TextMask a, TextMask b) { return {record("and", a.step, b.step)}; }

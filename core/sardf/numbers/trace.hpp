@@ -20,7 +20,8 @@ struct TraceStep {
     number,    // a constant: `value`
     call,      // a function or operator `name` of the operands: "+", "-", "*", "/", "negate",
                // "min", "max", "abs", "sqrt", "exp", "log", "sin", "cos", "tan", "asin", "acos",
-               // "atan2", "floor", "pow"; and of masks: "<", "<=", "and", "or", "not"
+               // "atan2", "floor", "pow"; of masks: "<", "<=", "and", "or", "not"; and in a
+               // Trace::Detail::differentiable record "freeze", "smaller", "larger", "length"
     select,    // operands: mask, value where it holds, value elsewhere
     shortcut,  // as select, but the third operand is costly: evaluate it only where it is needed
   };
@@ -34,7 +35,9 @@ struct TraceStep {
 /// The steps of one formula; a step's operands come before it.
 class Trace {
  public:
-  explicit Trace(int inputs);
+  /// A differentiable record tells apart what has one value but different derivatives.
+  enum class Detail { printable, differentiable };
+  explicit Trace(int inputs, Detail detail = Detail::printable);
   Trace(const Trace&) = delete;
   Trace& operator=(const Trace&) = delete;
   ~Trace();
@@ -45,12 +48,14 @@ class Trace {
   int add(TraceStep step);
   const std::vector<TraceStep>& steps() const { return steps_; }
   const TraceStep& operator[](int step) const { return steps_[step]; }
+  bool is_differentiable() const { return detail_ == Detail::differentiable; }
   int result = -1;
 
  private:
   using Key = std::tuple<TraceStep::Kind, std::string, int, uint64_t, std::array<int, 3>>;
   std::vector<TraceStep> steps_;
   std::map<Key, int> known_;
+  Detail detail_;
   Trace* outer_;
 };
 
@@ -98,7 +103,12 @@ inline Text max(Text a, Text b) { return Text::call("max", a, b); }
 inline Text abs(Text a) { return Text::call("abs", a); }
 inline Text sqrt(Text a) { return Text::call("sqrt", a); }
 inline Text square(Text a) { return Text::call("*", a, a); }
-inline Text freeze(Text a) { return a; }
+/// What a printable record has no word for becomes elementary steps there.
+Text freeze(Text a);
+Text smaller(Text a, Text b);
+Text larger(Text a, Text b);
+Text length(Text a, Text b);
+Text length(Text a, Text b, Text c);
 inline Text cosine(Text a, Text b) { return Text::call("/", a, b); }
 inline Text exp(Text a) { return Text::call("exp", a); }
 inline Text log(Text a) { return Text::call("log", a); }

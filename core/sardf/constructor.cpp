@@ -5,6 +5,7 @@
 #include "sardf/shapes_combine.hpp"
 #include "sardf/shapes_contour.hpp"
 #include "sardf/shapes_domain.hpp"
+#include "sardf/shapes_features.hpp"
 #include "sardf/shapes_transform.hpp"
 
 namespace sardf {
@@ -33,6 +34,7 @@ Registry listed() {
   };
   CombineShapes::for_each(add_shape);
   ContourShapes::for_each(add_shape);
+  FeatureShapes::for_each(add_shape);
   TransformShapes::for_each(add_shape);
   DomainShapes::for_each(add_shape);
   BlendList::for_each(

@@ -59,9 +59,10 @@ Nearest nearest_out_of_range(const Vec3& point, const Vec3& of_set) {
   Nearest found;
   found.point = of_set;
   const Vec3 away = point - of_set;
-  const bool is_nan = std::isnan(point[0] + point[1] + point[2]);
-  // hypot of an infinity and a NaN is infinite.
-  found.distance = is_nan ? std::numeric_limits<double>::quiet_NaN() : norm(away);
+  const bool is_nan = std::isnan(point[0]) || std::isnan(point[1]) || std::isnan(point[2]);
+  // hypot of two numbers is infinite if one of them is; that of three divides infinities.
+  found.distance = is_nan ? std::numeric_limits<double>::quiet_NaN()
+                          : std::hypot(std::hypot(away[0], away[1]), away[2]);
   const double most = max(max(std::abs(away[0]), std::abs(away[1])), std::abs(away[2]));
   found.gradient = normalized((1 / most) * away);
   return found;

@@ -11,7 +11,7 @@ namespace {
 constexpr int most_points = most_degree + 1, most_coefficients = 2 * most_degree + 1;
 // After so many halvings a piece is shorter than the rounding of its coordinates.
 constexpr int deepest = 48;
-constexpr double polish_within = 1e-6;
+constexpr double polish_within = 1e-5;
 
 using Points = std::array<Weighted, most_points>;
 using Coefficients = std::array<double, most_coefficients>;
@@ -47,18 +47,12 @@ class Part {
   void visit(const Points& points, double from, double to, int depth);
 
  private:
-  void note(double squared, double parameter) {
-    if (!(squared < search_.squared)) return;
-    search_.squared = squared;
-    search_.part = piece_;
-    search_.parameter = parameter;
-  }
   double squared_at(const Weighted& at) const {
     return rational ? product(at, at) / (at[3] * at[3]) : product(at, at);
   }
   void set_coefficients(const Points& points);
   /// The coefficients of g for the present threshold; false where none is negative.
-  bool may_be_nearer();
+  bool may_be_nearer(double threshold);
   /// A bound of g'' from below, 0 where it is within rounding.
   double convexity() const;
   double minimum(const Points& points) const;
@@ -90,8 +84,7 @@ void Part<rational>::set_coefficients(const Points& points) {
 }
 
 template <bool rational>
-bool Part<rational>::may_be_nearer() {
-  const double threshold = search_.threshold();
+bool Part<rational>::may_be_nearer(double threshold) {
   double least = infinity;
   for (size_t k = 0; k <= size_t(2 * degree_); ++k) {
     g_[k] = squares_[k] - threshold * weights_[k];
@@ -137,7 +130,6 @@ double Part<rational>::minimum(const Points& points) const {
 
 template <bool rational>
 bool Part<rational>::is_minimum(const Points& points, double t) {
-  may_be_nearer();
   const double a = convexity();
   if (!(a > 0)) return false;
   const Jet jet = jet_at(points, degree_, t);
@@ -153,14 +145,16 @@ bool Part<rational>::is_minimum(const Points& points, double t) {
 template <bool rational>
 void Part<rational>::visit(const Points& points, double from, double to, int depth) {
   const double start = squared_at(points[0]), end = squared_at(points[size_t(degree_)]);
-  note(start, from);
-  note(end, to);
+  search_.note(start, piece_, from, false);
+  search_.note(end, piece_, to, false);
   set_coefficients(points);
-  if (!may_be_nearer()) return;
-  if (convexity() > 0) {
+  // Within the tolerance the distance is known, but not yet which of two pieces has the minimum.
+  if (!may_be_nearer(depth == 0 ? search_.squared : search_.threshold())) return;
+  if (depth == 0 || convexity() > 0) {
     const double t = minimum(points);
-    note(squared_at(jet_at(points, degree_, t).at), from + t * (to - from));
-    if (!may_be_nearer() || is_minimum(points, t)) return;
+    const double there = squared_at(jet_at(points, degree_, t).at);
+    search_.note(there, piece_, from + t * (to - from), t > 0 && t < 1);
+    if (!may_be_nearer(search_.threshold()) || is_minimum(points, t)) return;
   }
   if (depth == deepest) return;
   Points left, right;
@@ -197,12 +191,21 @@ void CurveSearch::visit(const Weighted* points, int degree, size_t piece) {
   Part<rational>(*this, piece, degree).visit(relative(points, degree, point), 0, 1, 0);
 }
 
+void CurveSearch::note(double squared_there, size_t piece, double at, bool is_minimum) {
+  if (!(squared_there < squared * (is_minimum ? 1 + 0x1p-50 : 1))) return;
+  squared = min(squared, squared_there);
+  part = piece;
+  parameter = at;
+}
+
 void CurveSearch::polish(const Weighted* points, int degree) {
-  const CurvePoint p = curve_point(points, degree, parameter, point);
-  const double rise = dot(p.first, p.first) + dot(p.at, p.second);
-  const double next = parameter - dot(p.at, p.first) / rise;
-  const bool is_inside = parameter > 0 && parameter < 1 && next > 0 && next < 1;
-  if (is_inside && rise > 0 && std::abs(next - parameter) < polish_within) parameter = next;
+  for (int step = 0; step < 3 && parameter > 0 && parameter < 1; ++step) {
+    const CurvePoint p = curve_point(points, degree, parameter, point);
+    const double rise = dot(p.first, p.first) + dot(p.at, p.second);
+    const double next = parameter - dot(p.at, p.first) / rise;
+    if (!(rise > 0 && next > 0 && next < 1 && std::abs(next - parameter) < polish_within)) return;
+    parameter = next;
+  }
 }
 
 CurvePoint curve_point(const Weighted* points, int degree, double t, const Vec3& origin) {

@@ -29,11 +29,14 @@ struct CurveSearch {
 
   /// Squared distance that pieces are compared with: of the best distance less the tolerance.
   double threshold() const;
+  /// Takes note of a point of the part, also where the best one is nearer by rounding alone and
+  /// this one `is_minimum`: of such points the minimum has the right direction.
+  void note(double squared_there, size_t piece, double at, bool is_minimum);
   /// Takes note of the pieces' points that are nearer. `points`: degree + 1 of them.
   template <bool rational>
   void visit(const Weighted* points, int degree, size_t piece);
-  /// A last step of Newton's iteration on the whole piece that the best point is on, where rounding
-  /// is least: for the direction, as the distance is stationary.
+  /// Last steps of Newton's iteration on the whole piece that the best point is on, where rounding
+  /// is least. The distance has all its digits before; its direction needs twice as many.
   void polish(const Weighted* points, int degree);
 };
 

@@ -66,7 +66,7 @@ struct Helix : Feature {
     const Place<T> place{atan2(v, u), freeze(at[2]) / T(rise_), T(steepness_) * length(u, v)};
     const T nearest = floor((place.height - place.angle) / T(turn) + T(0.5));
     const T found = nearest_in_turn(place, nearest);
-    const T free = distance(at, place, nearest, found);
+    const T free = length_to(at, place, nearest, found);
     if (!start && !end) return free;
 
     // Where the nearest point lies beyond an end, the nearest that is left lies in the last turn
@@ -92,7 +92,7 @@ struct Helix : Feature {
       const T whole = T(turn) * turns;
       if (start) tau = max(tau, first - whole);
       if (end) tau = min(tau, last - whole);
-      return distance(at, place, turns, tau);
+      return length_to(at, place, turns, tau);
     };
     return min(clamped(nearest, found), min(clamped(at_end, nearest_in_turn(place, at_end)),
                                             clamped(before, nearest_in_turn(place, before))));
@@ -136,9 +136,10 @@ struct Helix : Feature {
   }
 
   template <class T>
-  T distance(const std::array<T, 3>& at, const Place<T>& place, T turns, T tau) const {
-    const T angle = place.angle + tau;
-    const T rise = T(rise_) * (angle + T(turn) * turns);
+  T length_to(const std::array<T, 3>& at, const Place<T>& place, T turns, T tau) const {
+    // Frozen once more: on the axis the angle's derivative is none even of a constant.
+    const T angle = freeze(place.angle + tau);
+    const T rise = freeze(T(rise_) * (angle + T(turn) * turns));
     return length(at[0] - T(radius) * cos(angle), at[1] - T(radius) * sin(angle), at[2] - rise);
   }
 

@@ -10,7 +10,7 @@ namespace {
 
 // After so many halvings in each direction a patch is smaller than the rounding of coordinates.
 constexpr int deepest = 96;
-constexpr double polish_within = 1e-6;
+constexpr double polish_within = 1e-5;
 
 double product(const Weighted& a, const Weighted& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -51,15 +51,9 @@ class PatchPart {
   const Weighted& corner(const Weighted* points, int k) const {
     return points[size_t((k & 1 ? degrees_.u : 0) * (degrees_.v + 1) + (k & 2 ? degrees_.v : 0))];
   }
-  void note(double squared, const Vec2& parameters) {
-    if (!(squared < search_.squared)) return;
-    search_.squared = squared;
-    search_.part = patch_;
-    search_.parameters = parameters;
-  }
-  bool is_beyond_plane(const Weighted* points) const;
+  bool is_beyond_plane(const Weighted* points, double distance) const;
   void set_coefficients(const Weighted* points);
-  bool may_be_nearer();
+  bool may_be_nearer(double distance);
   Curvature curvature() const;
   Vec2 start() const;
   Vec2 minimum(const Weighted* points, Vec2 x) const;
@@ -73,15 +67,15 @@ class PatchPart {
   Scratch& scratch_;
 };
 
-bool PatchPart::is_beyond_plane(const Weighted* points) const {
+bool PatchPart::is_beyond_plane(const Weighted* points, double distance) const {
   Vec3 sight{};
   for (int k = 0; k < 4; ++k) sight = sight + point_of(corner(points, k));
-  const double size = norm(sight), least = search_.distance_threshold();
+  const double size = norm(sight);
   if (!(size > 0)) return false;
   sight = (1 / size) * sight;
   for (size_t i = 0; i < degrees_.points(); ++i) {
     const Weighted& p = points[i];
-    if (p[0] * sight[0] + p[1] * sight[1] + p[2] * sight[2] < least * p[3]) return false;
+    if (p[0] * sight[0] + p[1] * sight[1] + p[2] * sight[2] < distance * p[3]) return false;
   }
   return true;
 }
@@ -123,8 +117,8 @@ void PatchPart::set_coefficients(const Weighted* points) {
   }
 }
 
-bool PatchPart::may_be_nearer() {
-  const double distance = search_.distance_threshold(), threshold = distance * distance;
+bool PatchPart::may_be_nearer(double distance) {
+  const double threshold = distance * distance;
   double least = infinity;
   for (size_t k = 0; k < scratch_.g.size(); ++k) {
     scratch_.g[k] = scratch_.squares[k] - threshold * scratch_.weights[k];
@@ -160,6 +154,10 @@ Vec2 PatchPart::start() const {
   return {double(at / width) / (2 * degrees_.u), double(at % width) / (2 * degrees_.v)};
 }
 
+// Where the squared distance bends by less than this share of what it would on a plane, all points
+// in this direction are about as near: a step there would follow rounding.
+constexpr double least_bend = 1e-7;
+
 /// A step towards the minimum of half the squared distance over the square [0, 1]².
 struct Step {
   Vec2 by{};
@@ -172,7 +170,8 @@ struct Step {
     const double mixed = dot(p.u, p.v) + dot(p.at, p.uv);
     std::array<bool, 2> fixed;
     for (size_t k = 0; k < 2; ++k) {
-      fixed[k] = (x[k] == 0 && slope[k] >= 0) || (x[k] == 1 && slope[k] <= 0);
+      fixed[k] = std::abs(rise[k]) < least_bend * flat[k] || (x[k] == 0 && slope[k] >= 0) ||
+                 (x[k] == 1 && slope[k] <= 0);
       const double by_rise = rise[k] > 0 ? rise[k] : flat[k];
       by[k] = fixed[k] || by_rise == 0 ? 0 : -slope[k] / by_rise;
     }
@@ -261,9 +260,16 @@ double PatchPart::size_along(const Weighted* points, int axis) const {
 }
 
 void PatchPart::split(const Weighted* points, const Range& range, const Vec2& x, int depth) {
-  const int axis = size_along(points, 0) >= size_along(points, 1) ? 0 : 1;
+  int axis = size_along(points, 0) >= size_along(points, 1) ? 0 : 1;
+  const SurfacePoint p = surface_point(points, degrees_, x, {});
+  const auto is_inside = [&](size_t k) { return x[k] > 0 && x[k] < 1; };
+  const bool bends_u = dot(p.u, p.u) * least_bend < std::abs(dot(p.u, p.u) + dot(p.at, p.uu));
+  const bool bends_v = dot(p.v, p.v) * least_bend < std::abs(dot(p.v, p.v) + dot(p.at, p.vv));
+  if (bends_u && !bends_v && is_inside(0)) axis = 0;
+  if (bends_v && !bends_u && is_inside(1)) axis = 1;
   const size_t k = size_t(axis);
-  const double t = x[k] > 0.05 && x[k] < 0.95 ? x[k] : 0.5;
+  const double t =
+      is_inside(k) && (bends_u != bends_v || (x[k] > 0.05 && x[k] < 0.95)) ? x[k] : 0.5;
   Weighted* left = &scratch_.patches[size_t(2 * depth) * degrees_.points()];
   Weighted* right = left + degrees_.points();
   split_patch(points, degrees_, axis, t, left, right);
@@ -281,15 +287,19 @@ void PatchPart::split(const Weighted* points, const Range& range, const Vec2& x,
 void PatchPart::visit(const Weighted* points, const Range& range, int depth) {
   for (int k = 0; k < 4; ++k) {
     const Weighted& p = corner(points, k);
-    note(product(p, p) / (p[3] * p[3]), range.at({k & 1 ? 1.0 : 0.0, k & 2 ? 1.0 : 0.0}));
+    search_.note(product(p, p) / (p[3] * p[3]), patch_,
+                 range.at({k & 1 ? 1.0 : 0.0, k & 2 ? 1.0 : 0.0}), false);
   }
-  if (is_beyond_plane(points)) return;
+  // Within the tolerance the distance is known, but not yet which of two patches has the minimum.
+  const double distance = depth == 0 ? std::sqrt(search_.squared) : search_.distance_threshold();
+  if (is_beyond_plane(points, distance)) return;
   set_coefficients(points);
-  if (!may_be_nearer()) return;
+  if (!may_be_nearer(distance)) return;
   const Vec2 x = minimum(points, start());
-  const PatchJet jet = patch_jet(points, degrees_, x);
-  note(product(jet.at, jet.at) / (jet.at[3] * jet.at[3]), range.at(x));
-  if (!may_be_nearer() || is_minimum(points, x)) return;
+  const Weighted there = patch_jet(points, degrees_, x).at;
+  const bool is_inside = x[0] > 0 && x[0] < 1 && x[1] > 0 && x[1] < 1;
+  search_.note(product(there, there) / (there[3] * there[3]), patch_, range.at(x), is_inside);
+  if (!may_be_nearer(search_.distance_threshold()) || is_minimum(points, x)) return;
   if (depth < deepest) split(points, range, x, depth);
 }
 
@@ -317,26 +327,36 @@ void SurfaceSearch::visit(const Weighted* points, PatchDegrees degrees, size_t p
   PatchPart(*this, patch, degrees, scratch).visit(moved.data(), {}, 0);
 }
 
+void SurfaceSearch::note(double squared_there, size_t patch, const Vec2& at, bool is_minimum) {
+  if (!(squared_there < squared * (is_minimum ? 1 + 0x1p-50 : 1))) return;
+  squared = min(squared, squared_there);
+  part = patch;
+  parameters = at;
+}
+
 void SurfaceSearch::polish(const Weighted* points, PatchDegrees degrees) {
-  const SurfacePoint p = surface_point(points, degrees, parameters, point);
-  // A parameter on a side stays there.
   const auto is_inside = [](double t) { return t > 0 && t < 1; };
-  Vec2 slope{dot(p.at, p.u), dot(p.at, p.v)}, next = parameters;
-  const double uu = dot(p.u, p.u) + dot(p.at, p.uu), vv = dot(p.v, p.v) + dot(p.at, p.vv);
-  const double uv = dot(p.u, p.v) + dot(p.at, p.uv), determinant = uu * vv - uv * uv;
-  if (is_inside(next[0]) && is_inside(next[1])) {
-    next[0] -= (vv * slope[0] - uv * slope[1]) / determinant;
-    next[1] -= (uu * slope[1] - uv * slope[0]) / determinant;
-  } else if (is_inside(next[0])) {
-    next[0] -= slope[0] / uu;
-  } else if (is_inside(next[1])) {
-    next[1] -= slope[1] / vv;
+  for (int step = 0; step < 3; ++step) {
+    const SurfacePoint p = surface_point(points, degrees, parameters, point);
+    const Vec2 slope{dot(p.at, p.u), dot(p.at, p.v)};
+    const double uu = dot(p.u, p.u) + dot(p.at, p.uu), vv = dot(p.v, p.v) + dot(p.at, p.vv);
+    const double uv = dot(p.u, p.v) + dot(p.at, p.uv), determinant = uu * vv - uv * uv;
+    // A parameter on a side stays there.
+    Vec2 by{};
+    if (is_inside(parameters[0]) && is_inside(parameters[1])) {
+      by = {(uv * slope[1] - vv * slope[0]) / determinant,
+            (uv * slope[0] - uu * slope[1]) / determinant};
+    } else if (is_inside(parameters[0])) {
+      by[0] = -slope[0] / uu;
+    } else if (is_inside(parameters[1])) {
+      by[1] = -slope[1] / vv;
+    }
+    const Vec2 next{parameters[0] + by[0], parameters[1] + by[1]};
+    for (size_t k = 0; k < 2; ++k) {
+      if (by[k] != 0 && !(std::abs(by[k]) < polish_within && is_inside(next[k]))) return;
+    }
+    parameters = next;
   }
-  for (size_t k = 0; k < 2; ++k) {
-    const double moved = std::abs(next[k] - parameters[k]);
-    if (moved > 0 && !(moved < polish_within && is_inside(next[k]))) return;
-  }
-  if (!std::isnan(next[0] + next[1])) parameters = next;
 }
 
 SurfacePoint surface_point(const Weighted* points, PatchDegrees degrees, const Vec2& at,

@@ -33,11 +33,15 @@ struct SurfaceSearch {
   size_t part = 0;         // where: which patch, and its parameters
   Vec2 parameters{};
 
+  /// What patches are compared with: the best distance less the tolerance.
   double distance_threshold() const;
+  /// Takes note of a point of the patch, also where the best one is nearer by rounding alone and
+  /// this one `is_minimum`: of such points the minimum has the right direction.
+  void note(double squared_there, size_t patch, const Vec2& at, bool is_minimum);
   /// Takes note of the patch's points that are nearer. `points`: rows of v, one for each u.
   void visit(const Weighted* points, PatchDegrees degrees, size_t patch);
-  /// A last step of Newton's iteration on the whole patch that the best point is on, where rounding
-  /// is least: for the direction, as the distance is stationary.
+  /// Last steps of Newton's iteration on the whole patch that the best point is on, where rounding
+  /// is least. The distance has all its digits before; its direction needs twice as many.
   void polish(const Weighted* points, PatchDegrees degrees);
 };
 

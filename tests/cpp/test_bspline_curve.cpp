@@ -87,6 +87,19 @@ class Reference {
 
  private:
   double refined(const Vec3& p, double a, double b) const {
+    // The curve may turn between two samples.
+    for (int zoom = 0; zoom < 3; ++zoom) {
+      double best = infinity, low = a;
+      const double step = (b - a) / 60;
+      for (int i = 0; i <= 60; ++i) {
+        const double d = norm((*this)(a + i * step) - p);
+        if (d < best) {
+          best = d;
+          low = a + i * step;
+        }
+      }
+      std::tie(a, b) = std::pair(std::max(a, low - step), std::min(b, low + step));
+    }
     const double golden = (std::sqrt(5.0) - 1) / 2;
     for (int i = 0; i < 60; ++i) {
       const double c = b - golden * (b - a), d = a + golden * (b - a);
@@ -127,7 +140,10 @@ CurveData random_curve(Draw& draw, int kind) {
     double knot = 0;
     for (int i = 0; i < count + degree + 1; ++i) {
       data.knots.push_back(knot);
-      if (draw.below(3)) knot += draw.uniform(0.01, 1);
+      // More equal knots than the degree would break the curve, which the reference cannot do.
+      const bool is_run =
+          i >= degree && data.knots[size_t(i)] == data.knots[size_t(i - degree + 1)];
+      if (is_run || draw.below(3)) knot += draw.uniform(0.01, 1);
     }
     // The curve must have a length.
     for (size_t i = size_t(count); i < data.knots.size(); ++i) data.knots[i] += 1;
@@ -160,6 +176,7 @@ TEST(BSplineCurve, EqualsRefinedSamplingSlow) {
       EXPECT_NEAR(found.distance, reference.distance(p), 2e-8);
       EXPECT_LE(found.distance, reference.distance(p) + 1e-13);
       EXPECT_NEAR(norm(found.point - p), found.distance, 1e-14);
+      EXPECT_LE(reference.distance(found.point), 2e-8);
       EXPECT_LE(curve.nearest(reference(t)).distance, 1e-14);
     }
   }
@@ -319,8 +336,10 @@ TEST_P(GoldenCurves, EqualTheReference) {
       // On the curve there is no direction, whatever rounding left of one.
       if (std::isnan(gx) || row[table.column("f")] < table.tolerance()) continue;
       ++directed;
-      EXPECT_NEAR(found.gradient[0], gx, table.tolerance());
-      EXPECT_NEAR(found.gradient[1], gy, table.tolerance());
+      // The reference takes the root with the least distance, in which the parameter has only half
+      // of the digits; ours is orthogonal to the last digit.
+      EXPECT_NEAR(found.gradient[0], gx, 2e-7);
+      EXPECT_NEAR(found.gradient[1], gy, 2e-7);
     }
     EXPECT_GT(directed, table.rows.size() * 9 / 10);
   }

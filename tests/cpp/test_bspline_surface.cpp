@@ -284,7 +284,7 @@ SurfaceData ring(double major, double minor) {
     std::vector<Vec3> row;
     for (size_t k = 0; k < (is_sphere ? 5u : 9u); ++k) {
       // The tube's circle starts at its pole, so that half of it is the sphere's meridian.
-      const auto& [a, b, weight] = full_circle()[k];
+      const auto [a, b, weight] = full_circle()[k];
       const double radius = major + minor * b;
       row.push_back({radius * x, radius * y, minor * a});
       data.weights.push_back(w * weight);

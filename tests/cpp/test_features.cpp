@@ -118,7 +118,7 @@ TEST(Skeleton, IsTheDistanceToTheNearest) {
 }
 
 TEST(Skeleton, TakesFeaturesAndWhatIsMadeOfThem) {
-  const Field ball = features::feature("sphere", {});
+  const Field ball = features::feature("sphere", {{"radius", 1.0}});
   const Field boundary = features::feature("boundary", {{"solid", ball}});
   const Field moved = features::feature("translate", {{"field", boundary}, {"by", Vec3{0, 0, 5}}});
   const Field both = features::feature("skeleton", {{"of", std::vector<Field>{boundary, moved}}});
@@ -126,10 +126,10 @@ TEST(Skeleton, TakesFeaturesAndWhatIsMadeOfThem) {
 }
 
 TEST(Skeleton, RefusesSolids) {
-  const Field ball = features::feature("sphere", {});
+  const Field ball = features::feature("sphere", {{"radius", 1.0}});
   for (const Field& solid :
        {ball, features::feature("translate", {{"field", ball}, {"by", Vec3{0, 0, 5}}}),
-        features::feature("disc", {})}) {
+        features::feature("disc", {{"radius", 1.0}})}) {
     std::vector<Field> all = two_features();
     all.push_back(solid);
     try {

@@ -23,7 +23,7 @@ double reference(const Vec3& p, double r, double c, double from, double to) {
   };
   const int count = int((to - from) / turn * 400) + 10;
   const double step = (to - from) / count;
-  double best = squared(from);
+  double best = std::min(squared(from), squared(to));
   for (int i = 0; i <= count; ++i) {
     const double t = from + i * step;
     const double before = squared(std::max(t - step, from)),

@@ -87,7 +87,7 @@ inline void expect_distance_laws(const Field& field, Draw& draw, double size, in
     EXPECT_NEAR(in_float, there, operation.has_formula() ? 1e-5 * size : 6e-8 * there);
 
     const Vec3 g = gradient(f, p);
-    if (d > 0) EXPECT_NEAR(norm(g), 1, 1e-9);
+    EXPECT_NEAR(norm(g), 1, 1e-9);
     const double h = 1e-5 * size;
     for (size_t k = 0; k < 3; ++k) {
       Vec3 after = p, before = p;

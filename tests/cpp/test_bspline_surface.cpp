@@ -180,7 +180,7 @@ SurfaceData random_surface(Draw& draw, int kind) {
   return data;
 }
 
-TEST(BSplineSurface, EqualsRefinedSamplingSlow) {
+TEST(BSplineSurfaceSlow, EqualsRefinedSampling) {
   Draw draw(21);
   for (int kind = 0; kind < 28; ++kind) {
     SCOPED_TRACE(kind);

@@ -81,18 +81,6 @@ double polar_weight(const std::vector<double>& knots, size_t at, int degree, int
 
 }  // namespace
 
-double binomial(int n, int k) {
-  static const auto table = [] {
-    std::array<std::array<double, 2 * most_degree + 1>, 2 * most_degree + 1> all{};
-    for (size_t i = 0; i < all.size(); ++i) {
-      all[i][0] = 1;
-      for (size_t j = 1; j <= i; ++j) all[i][j] = all[i - 1][j - 1] + all[i - 1][j];
-    }
-    return all;
-  }();
-  return table[size_t(n)][size_t(k)];
-}
-
 std::vector<Span> spans_of(const Direction& direction, size_t count) {
   const int degree = checked_degree(direction);
   if (count < size_t(degree) + 1) {

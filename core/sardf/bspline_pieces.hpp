@@ -26,8 +26,16 @@ inline Weighted operator*(double s, const Weighted& a) {
 }
 inline Vec3 point_of(const Weighted& a) { return {a[0] / a[3], a[1] / a[3], a[2] / a[3]}; }
 
-/// C(n, k) for n up to twice the highest degree.
-double binomial(int n, int k);
+/// Pascal's triangle up to twice the highest degree.
+inline constexpr auto binomials = [] {
+  std::array<std::array<double, 2 * most_degree + 1>, 2 * most_degree + 1> all{};
+  for (size_t i = 0; i < all.size(); ++i) {
+    all[i][0] = 1;
+    for (size_t j = 1; j <= i; ++j) all[i][j] = all[i - 1][j - 1] + all[i - 1][j];
+  }
+  return all;
+}();
+constexpr double binomial(int n, int k) { return binomials[size_t(n)][size_t(k)]; }
 
 /// A polynomial piece of a B-spline: Bezier point j is the sum over k of weight(j, k) times control
 /// point (first + k) modulo their number. The weights are not negative and sum to 1.

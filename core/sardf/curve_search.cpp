@@ -149,7 +149,7 @@ void Part<rational>::visit(const Points& points, double from, double to, int dep
   search_.note(end, piece_, to, false);
   set_coefficients(points);
   // Within the tolerance the distance is known, but not yet which of two pieces has the minimum.
-  if (!may_be_nearer(depth == 0 ? search_.squared : search_.threshold())) return;
+  if (!may_be_nearer(depth == 0 ? search_.tight_threshold() : search_.threshold())) return;
   if (depth == 0 || convexity() > 0) {
     const double t = minimum(points);
     const double there = squared_at(jet_at(points, degree_, t).at);

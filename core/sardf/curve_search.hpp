@@ -29,6 +29,8 @@ struct CurveSearch {
 
   /// Squared distance that pieces are compared with: of the best distance less the tolerance.
   double threshold() const;
+  /// The same less rounding alone.
+  double tight_threshold() const { return squared * (1 - 0x1p-49); }
   /// Takes note of a point of the part, also where the best one is nearer by rounding alone and
   /// this one `is_minimum`: of such points the minimum has the right direction.
   void note(double squared_there, size_t piece, double at, bool is_minimum);

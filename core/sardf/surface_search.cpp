@@ -291,7 +291,7 @@ void PatchPart::visit(const Weighted* points, const Range& range, int depth) {
                  range.at({k & 1 ? 1.0 : 0.0, k & 2 ? 1.0 : 0.0}), false);
   }
   // Within the tolerance the distance is known, but not yet which of two patches has the minimum.
-  const double distance = depth == 0 ? std::sqrt(search_.squared) : search_.distance_threshold();
+  const double distance = depth == 0 ? search_.tight_threshold() : search_.distance_threshold();
   if (is_beyond_plane(points, distance)) return;
   set_coefficients(points);
   if (!may_be_nearer(distance)) return;
@@ -304,6 +304,8 @@ void PatchPart::visit(const Weighted* points, const Range& range, int depth) {
 }
 
 }  // namespace
+
+double SurfaceSearch::tight_threshold() const { return std::sqrt(squared) * (1 - 0x1p-50); }
 
 double SurfaceSearch::distance_threshold() const {
   return max(std::sqrt(squared) * (1 - 1e-13) - 16 * rounding, 0.0);

@@ -35,6 +35,8 @@ struct SurfaceSearch {
 
   /// What patches are compared with: the best distance less the tolerance.
   double distance_threshold() const;
+  /// The same less rounding alone.
+  double tight_threshold() const;
   /// Takes note of a point of the patch, also where the best one is nearer by rounding alone and
   /// this one `is_minimum`: of such points the minimum has the right direction.
   void note(double squared_there, size_t patch, const Vec2& at, bool is_minimum);

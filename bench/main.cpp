@@ -5,6 +5,7 @@
 int main(int count, char** arguments) {
   // Not before main: the operations' names are static objects.
   sardf::bench::register_evaluation();
+  sardf::bench::register_features();
   benchmark::Initialize(&count, arguments);
   if (benchmark::ReportUnrecognizedArguments(count, arguments)) return 1;
   benchmark::RunSpecifiedBenchmarks();

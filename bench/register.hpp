@@ -5,5 +5,7 @@ namespace sardf::bench {
 
 /// Of evaluation: one for each shape, number type and loop, and one for each operation.
 void register_evaluation();
+/// Of distances to curves, surfaces and many segments.
+void register_features();
 
 }  // namespace sardf::bench

@@ -9,6 +9,7 @@
 #include "sardf/shapes_domain.hpp"
 #include "sardf/shapes_interpolation.hpp"
 #include "sardf/shapes_normalize.hpp"
+#include "sardf/shapes_features.hpp"
 #include "sardf/shapes_transform.hpp"
 
 namespace sardf {
@@ -38,6 +39,7 @@ Registry listed() {
   CombineShapes::for_each(add_shape);
   FaceShapes::for_each(add_shape);
   ContourShapes::for_each(add_shape);
+  FeatureShapes::for_each(add_shape);
   TransformShapes::for_each(add_shape);
   DomainShapes::for_each(add_shape);
   InterpolationShapes::for_each(add_shape);

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "sardf/constructor.hpp"
+#include "sardf/data_operation.hpp"
 #include "sardf/operation_of.hpp"
 #include "sardf/ops_blends.hpp"
 
@@ -88,13 +89,23 @@ std::shared_ptr<const Construction> constructed(const Constructor& constructor,
 
 std::string group_of(Kind kind);
 
+/// The operation, or the distance to the set of points that the struct asks for in its place: it
+/// then has `PointSetPointer as_set() const`, null where the formula is to be used.
+template <class Op>
+OperationPointer operation_for(const Op& op) {
+  if constexpr (requires { op.as_set(); }) {
+    if (PointSetPointer set = op.as_set()) return distance_operation(std::move(set));
+  }
+  return make_operation(op);
+}
+
 /// For an operation of kind solid, plane or feature: applied to the coordinates.
 template <class Op>
 Constructor constructor_of_operation() {
   return {Op::name, group_of(Op::kind), Op::doc, parameter_infos<Op>(),
           [](const Constructor& constructor, std::vector<Value> arguments) {
             const std::array<Expression, 3> xyz{coordinate(0), coordinate(1), coordinate(2)};
-            const OperationPointer operation = make_operation(with_arguments<Op>(arguments));
+            const OperationPointer operation = operation_for(with_arguments<Op>(arguments));
             const Exactness how = operation->is_distance() ? Exactness::exact : Exactness::estimate;
             return Field(call(operation, std::span(xyz.data(), Op::arity)), {how, how},
                          constructed(constructor, std::move(arguments)));

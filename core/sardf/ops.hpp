@@ -8,6 +8,7 @@
 #include "sardf/ops_ellipsoid.hpp"
 #include "sardf/ops_features.hpp"
 #include "sardf/ops_functions.hpp"
+#include "sardf/ops_helix.hpp"
 #include "sardf/ops_plane.hpp"
 #include "sardf/ops_quadric.hpp"
 #include "sardf/ops_sardf.hpp"
@@ -15,7 +16,7 @@
 
 namespace sardf {
 
-using Ops = Joined<SolidOps, ConeOps, EllipsoidOps, QuadricOps, PlaneOps, FeatureOps, BlendOps,
-                   DomainOps, ArithmeticOps, FunctionOps>::type;
+using Ops = Joined<SolidOps, ConeOps, EllipsoidOps, QuadricOps, PlaneOps, FeatureOps, HelixOps,
+                   BlendOps, DomainOps, ArithmeticOps, FunctionOps>::type;
 
 }  // namespace sardf

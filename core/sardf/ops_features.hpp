@@ -1,4 +1,4 @@
-// Features: unsigned distances to points and curves.
+// Features: unsigned distances to points, curves and planes.
 #pragma once
 
 #include <numbers>
@@ -6,6 +6,12 @@
 #include "sardf/ops_cone.hpp"
 
 namespace sardf {
+
+class PointSet;
+
+/// Formulas with a loop over points or segments have at most this many; beyond, the constructor
+/// makes a PointSet with a tree, which is faster in double and, from about there on, in float.
+inline constexpr size_t most_in_formula = 256;
 
 struct Feature {
   static constexpr Kind kind = Kind::feature;
@@ -34,6 +40,8 @@ struct Points : Feature {
   static void parameters(V& v) {
     v(Parameter{"at", "the points", Unit::length, Range::any, true, 1}, &Points::at);
   }
+  /// The same with a tree; null where the formula is to be used.
+  std::shared_ptr<const PointSet> as_set() const;
   template <class T>
   T eval(T x, T y, T z) const {
     T best(0.0);
@@ -71,6 +79,8 @@ struct Polyline : Feature {
       &Polyline::vertices);
     v(Parameter{"closed", "whether the last corner is joined to the first"}, &Polyline::closed);
   }
+  /// The same with a tree; null where the formula is to be used.
+  std::shared_ptr<const PointSet> as_set() const;
   template <class T>
   T eval(T x, T y, T z) const {
     T best(0.0);
@@ -83,6 +93,26 @@ struct Polyline : Feature {
     }
     return sqrt(best);
   }
+};
+
+struct Plane : Feature {
+  static constexpr const char *name = "plane",
+                              *doc = "The distance to an infinite plane, from either side.";
+  Vec3 point{};
+  Axis normal;
+  template <class V>
+  static void parameters(V& v) {
+    v(length_of("point", "a point of the plane"), &Plane::point);
+    v(direction_of("normal", "direction perpendicular to it"), &Plane::normal);
+  }
+  void prepare() { frame.set(point, normal); }
+  template <class T>
+  T eval(T x, T y, T z) const {
+    return abs(frame.local(x, y, z)[2]);
+  }
+
+ private:
+  Frame frame;
 };
 
 struct Circle : Feature {
@@ -148,6 +178,6 @@ struct Arc : Feature {
   Vec2 along_{1, 0};
 };
 
-using FeatureOps = OpList<Point, Points, Segment, Polyline, Circle, Arc>;
+using FeatureOps = OpList<Point, Points, Segment, Polyline, Plane, Circle, Arc>;
 
 }  // namespace sardf

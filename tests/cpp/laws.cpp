@@ -83,6 +83,11 @@ Field random_plane_field(Random& r) {
 
 Value random_value(Random& r, const ParameterInfo& info, int depth) {
   const Parameter p{"", "", info.unit, info.range, info.required, info.at_least};
+  // Degrees, knots and weights depend on one another: by default they fit.
+  const bool is_bare = info.type == ParameterType::number || info.type == ParameterType::numbers;
+  if (is_bare && !info.required && info.unit == Unit::none && r.chance(0.5)) {
+    return info.default_value;
+  }
   switch (info.type) {
     case ParameterType::boolean:
       return r.chance(0.5);
@@ -109,6 +114,15 @@ Value random_value(Random& r, const ParameterInfo& info, int depth) {
       std::vector<double> all(size_t(p.at_least + r.below(5)));
       for (double& a : all) a = r.number(p);
       return all;
+    }
+    case ParameterType::point_grid: {
+      PointGrid grid(size_t(p.at_least + r.below(5)));
+      const size_t columns = size_t(2 + r.below(5));
+      for (std::vector<Vec3>& row : grid) {
+        row.resize(columns);
+        for (Vec3& at : row) randomize(r, p, at);
+      }
+      return grid;
     }
     case ParameterType::optional_field:
       if (r.chance(0.5)) return {};

@@ -1,0 +1,51 @@
+// A B-spline curve as a set of points.
+#pragma once
+
+#include "sardf/box_tree.hpp"
+#include "sardf/curve_search.hpp"
+
+namespace sardf {
+
+/// What a B-spline curve is made from. No weights: all are 1.
+struct CurveData {
+  std::vector<Vec3> control_points;
+  double degree = 3;
+  std::vector<double> knots, weights;
+  bool closed = false;
+};
+
+/// The curve, cut into Bezier pieces that turn by less than a right angle, in a tree.
+class CurveSet final : public PointSet {
+ public:
+  /// Throws Error for what spans_of rejects, for a wrong number of weights, for weights that are
+  /// not positive, and for control points that are all equal.
+  CurveSet(std::string name, std::string doc, const CurveData& data);
+
+  Nearest nearest(const Vec3& point) const override;
+  std::array<Vec3, 3> jacobian(const Vec3& point, const Nearest& at) const override;
+  std::array<Interval, 3> bounds() const override;
+  /// Number of pieces searched.
+  size_t pieces() const { return points_.size() / size_t(degree_ + 1); }
+
+ private:
+  void add_pieces(std::vector<Weighted> piece, int depth);
+  void sort_into_tree();
+
+  bool rational_;
+  int degree_ = 0;
+  double scale_ = 1, rounding_ = 0;  // coordinates are stored times the scale, a power of two
+  std::vector<Weighted> points_;     // degree + 1 for each piece, in the tree's order
+  std::unique_ptr<BoxTree> tree_;
+};
+
+/// Weighted control points times `scale`; throws Error as CurveSet and SurfaceSet say.
+std::vector<Weighted> weighted_points(const std::vector<Vec3>& points,
+                                      const std::vector<double>& weights, double scale);
+/// 1 for points without extent.
+double scale_of(const std::vector<Vec3>& points);
+/// The extent of Bezier points.
+Extent extent_of(std::span<const Weighted> points);
+/// Whether the steps along Bezier points turn little and their weights are alike.
+bool is_nearly_straight(const Weighted* points, int degree, size_t stride);
+
+}  // namespace sardf

@@ -46,8 +46,8 @@ struct SplineGrid {
   size_t cell_number(const std::array<int, 3>& spans_of_cell) const;
   /// A coordinate outside counts as the nearest end, NaN as the lower. Monotone in x.
   SplinePlace place(int axis, double x) const {
-    const double s = (x - lower[size_t(axis)]) * per_length(axis);
-    const double inside = s > 0 ? std::min(s, double(spans(axis))) : 0;
+    const double s = (x - lower[size_t(axis)]) * per_length(axis), end = spans(axis);
+    const double inside = x >= upper[size_t(axis)] ? end : s > 0 ? std::min(s, end) : 0;
     const int span = std::min(int(inside), spans(axis) - 1);
     return {span, inside - span};
   }

@@ -158,7 +158,9 @@ std::vector<double> partials_at(const Operation& op, const std::vector<double>& 
 
 bool can_be_random(const Constructor& constructor) {
   for (const ParameterInfo& p : constructor.parameters) {
-    if (p.required && p.type == ParameterType::text) return false;
+    if (p.required && (p.type == ParameterType::text || p.type == ParameterType::numbers)) {
+      return false;
+    }
   }
   return true;
 }

@@ -1,5 +1,6 @@
 #include "sardf/fit.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <deque>
@@ -22,6 +23,15 @@ constexpr double finer_energy_allowed = 1.5;
 Progress part_of(const Progress& progress, double from, double to) {
   if (!progress) return {};
   return [&progress, from, to](double share) { return progress(from + (to - from) * share); };
+}
+
+/// Never reports less than before: 0 is said while a part of the work goes on.
+Progress rising(const Progress& progress) {
+  if (!progress) return {};
+  return [&progress, shown = 0.0](double share) mutable {
+    shown = std::max(shown, share);
+    return progress(shown);
+  };
 }
 
 void check_memory(double bytes, const SplineGrid& grid) {
@@ -228,7 +238,7 @@ FitResult fit(const FitProblem& problem, const Quadrature& quadrature, const Pro
   const Timer timer;
   check_terms(problem);
   check_plane(problem);
-  FitResult result = solved(problem, quadrature, progress);
+  FitResult result = solved(problem, quadrature, rising(progress));
   result.report.seconds = timer.seconds();
   return result;
 }
@@ -238,9 +248,10 @@ FitResult fit(const FitProblem& problem, const Progress& progress) {
   check_terms(problem);
   check_plane(problem);
   check_memory(FitSystem::least_memory(problem.grid, problem.points), problem.grid);
+  const Progress shown = rising(progress);
   const Quadrature quadrature =
-      quadrature_over(problem.grid, problem.solid, problem.points, part_of(progress, 0, 0.1));
-  FitResult result = solved(problem, quadrature, part_of(progress, 0.1, 1));
+      quadrature_over(problem.grid, problem.solid, problem.points, part_of(shown, 0, 0.1));
+  FitResult result = solved(problem, quadrature, part_of(shown, 0.1, 1));
   result.report.seconds = timer.seconds();
   return result;
 }

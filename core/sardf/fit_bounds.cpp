@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 #include <random>
 
 #include "sardf/error.hpp"
@@ -12,8 +13,11 @@ namespace sardf {
 namespace {
 
 // Of the magnitudes that F and the bounds have.
-constexpr double violation_allowed = 1e-8, start_allowed = 1e-6;
-constexpr int most_rounds = 40, most_steps = 12;
+constexpr double violation_allowed = 1e-6, start_allowed = 1e-6;
+constexpr int most_rounds = 60, most_steps = 50;
+// How much smaller a round must make the violation, or else the springs become stiffer by as much.
+constexpr double wanted_reduction = 5;
+constexpr double stiffest = 1e4;
 
 double lower(const FitProblem& problem) { return problem.at_least.value_or(-infinity); }
 double upper(const FitProblem& problem) { return problem.at_most.value_or(infinity); }
@@ -130,15 +134,21 @@ class Bounded {
       mass += system.weight(i) * system.factor(i) * system.factor(i);
     }
     // Much stiffer than the energy itself.
-    spring_ = mass > 0 ? 100 * stiff / mass : 0;
+    softest_ = mass > 0 ? 100 * stiff / mass : 0;
+    spring_ = softest_;
     force_.assign(system.points(), 0.0);
   }
 
   SolvedEquations run() {
-    for (int round = 0; largest_violation() > allowed_; ++round) {
+    double now = largest_violation();
+    for (int round = 0; now > allowed_; ++round) {
       if (round == most_rounds) fail();
       relax();
       for (size_t i = 0; i < force_.size(); ++i) force_[i] = force_at(i);
+      const double before = now;
+      now = largest_violation();
+      const bool slow = wanted_reduction * now > before;
+      if (slow && spring_ < stiffest * softest_) spring_ *= wanted_reduction;
     }
     return std::move(now_);
   }
@@ -151,26 +161,65 @@ class Bounded {
     return up > 0 ? up : down < 0 ? down : 0;
   }
 
-  // Springs where they push, until these points remain the same.
+  double lower_target(size_t i) const { return lower(problem_) + force_[i] / spring_; }
+  double upper_target(size_t i) const { return upper(problem_) + force_[i] / spring_; }
+
+  // Newton's method for the energy with springs where they push, until these points remain the
+  // same. A convex function and a search along each step: it cannot circle.
   void relax() {
     std::vector<signed char> active(force_.size()), before;
     std::vector<double> stiffness(force_.size()), target(force_.size());
+    bool whole_step = false;
     for (int step = 0; step < most_steps; ++step) {
       for (size_t i = 0; i < force_.size(); ++i) {
         const double force = force_at(i);
         active[i] = force > 0 ? 1 : force < 0 ? -1 : 0;
         stiffness[i] = active[i] ? spring_ * system_.weight(i) : 0;
-        target[i] =
-            active[i] ? (force > 0 ? lower(problem_) : upper(problem_)) + force_[i] / spring_ : 0;
+        target[i] = force > 0 ? lower_target(i) : force < 0 ? upper_target(i) : 0;
       }
-      if (active == before) return;
+      if (whole_step && active == before) return;
       before = active;
       system_.set_springs(stiffness, target, progress_);
-      const int iterations = now_.iterations;
-      now_ = solve(system_, problem_.mean, std::move(now_.coefficients), progress_);
-      now_.iterations += iterations;
-      values_ = system_.values(now_.coefficients, progress_);
+      const SolvedEquations next = solve(system_, problem_.mean, now_.coefficients, progress_);
+      whole_step = move_towards(next, active, target);
     }
+  }
+
+  // By the share of the step with the least energy; whether that is all of it.
+  bool move_towards(const SolvedEquations& next, const std::vector<signed char>& active,
+                    const std::vector<double>& target) {
+    std::vector<double> step(now_.coefficients.size()), product, change = values_;
+    const std::vector<double> values = system_.values(next.coefficients, progress_);
+    for (size_t i = 0; i < step.size(); ++i) step[i] = next.coefficients[i] - now_.coefficients[i];
+    for (size_t i = 0; i < change.size(); ++i) change[i] = values[i] - values_[i];
+    system_.apply(step, product, progress_);
+    const double curvature = std::inner_product(step.begin(), step.end(), product.begin(), 0.0);
+    // With the springs at hand the energy is that of `next` and (1 - share)² * curvature; others
+    // push, and these may not, at the place of the share.
+    const auto slope_at = [&](double share) {
+      double slope = -(1 - share) * curvature;
+      for (size_t i = 0; i < change.size(); ++i) {
+        const double f = values_[i] + share * change[i];
+        const double push = std::min(f - lower_target(i), 0.0) + std::max(f - upper_target(i), 0.0);
+        const double counted = active[i] ? f - target[i] : 0;
+        slope += spring_ * system_.weight(i) * change[i] * (push - counted);
+      }
+      return slope;
+    };
+    double share = 1;
+    if (slope_at(1) > 0) {
+      double low = 0;
+      for (int halving = 0; halving < 30; ++halving) {
+        const double middle = 0.5 * (low + share);
+        (slope_at(middle) > 0 ? share : low) = middle;
+      }
+    }
+    for (size_t i = 0; i < step.size(); ++i) now_.coefficients[i] += share * step[i];
+    if (share == 1) now_.coefficients = next.coefficients;
+    now_.iterations += next.iterations;
+    now_.residual = next.residual;
+    values_ = system_.values(now_.coefficients, progress_);
+    return share == 1;
   }
 
   double largest_violation() const {
@@ -194,7 +243,7 @@ class Bounded {
   SolvedEquations now_;
   const Progress& progress_;
   std::vector<double> values_, force_;
-  double spring_, allowed_;
+  double spring_, softest_, allowed_;
 };
 
 }  // namespace

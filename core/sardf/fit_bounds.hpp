@@ -9,7 +9,7 @@ namespace sardf {
 void check_bounds(const FitProblem& problem, const FitSystem& system);
 
 /// From the minimum without bounds to that with F inside the bounds at every point of the
-/// quadrature, to 1e-8 of the largest magnitude. Throws Error where there is none, Cancelled.
+/// quadrature, to 1e-6 of the largest magnitude. Throws Error where there is none, Cancelled.
 SolvedEquations solve_within_bounds(const FitProblem& problem, FitSystem& system,
                                     SolvedEquations free, const Progress& progress);
 

@@ -117,19 +117,31 @@ class CellCutter {
     if (level < most_) to.coarser += volume;
   }
 
-  double share_of(const Box& box) const {
+  double share_of(const Box& box, Vec3* centre_of_share = nullptr) const {
     const Vec3 centre = centre_of(box);
     double value;
     Vec3 slope;
     solid_.gradients(centre.data(), 1, &value, slope.data());
     for (size_t k = 0; k < 3; ++k) slope[k] = std::isfinite(slope[k]) ? slope[k] * box.side[k] : 0;
-    return covered_share(value, slope.data(), dimensions_);
+    const double share = covered_share(value, slope.data(), dimensions_);
+    if (centre_of_share) {
+      // Exact where the boundary is along an axis.
+      size_t steepest = 0;
+      for (size_t k = 1; k < size_t(dimensions_); ++k) {
+        if (std::abs(slope[k]) > std::abs(slope[steepest])) steepest = k;
+      }
+      *centre_of_share = centre;
+      (*centre_of_share)[steepest] +=
+          std::copysign(0.5 * (1 - share) * box.side[steepest], slope[steepest]);
+    }
+    return share;
   }
 
   void add_share(const Box& box, CutCell& to) const {
-    const double volume = share_of(box) * volume_of(box);
+    Vec3 at;
+    const double volume = share_of(box, &at) * volume_of(box);
     if (!(volume > 0)) return;
-    to.at.push_back(centre_of(box));
+    to.at.push_back(at);
     to.weight.push_back(volume);
     to.volume += volume;
   }

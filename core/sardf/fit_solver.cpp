@@ -58,6 +58,15 @@ class Solver {
       made.residual = size_of(residual_of(c), reference);
       if (made.residual > 0.5 * before) break;
     }
+    if (made.residual > accepted && factors_) {
+      // They are worth little where the matrix is nearly singular.
+      factors_.reset();
+      if (constrained_) preconditioned_row_ = preconditioned(row_);
+      const int iterations = made.iterations;
+      made = run(std::move(c));
+      made.iterations += iterations;
+      return made;
+    }
     check(made);
     made.coefficients = std::move(c);
     return made;

@@ -304,9 +304,14 @@ TEST(Fit, SaysWhatCannotBe) {
   EXPECT_THAT(error(p), HasSubstr("200 x 200 x 200 splines needs about 6"));
 }
 
-// One point for each cell sees less than there are splines: energies far below the minimum.
+// One point for each cell is less than there are splines: an energy far below the minimum.
 TEST(Fit, RefusesAQuadratureThatIsTooCoarse) {
-  FitProblem p = slab(12);
+  FitProblem p;
+  p.grid = spline_grid({0, 0, 0}, {1, 1, 0}, {20, 20}, 3);
+  p.start = number(0);
+  p.factor = number(1);
+  p.values = function("sin", {number(40) * x * y});
+  p.smoothness = 1e-12;
   p.points = 1;
   EXPECT_THAT(error_of([&] { fit(p); }), HasSubstr("the quadrature is too coarse"));
 }

@@ -19,6 +19,7 @@ void add_mesh(CLI::App& app);
 void add_bake(CLI::App& app);
 void add_povray(CLI::App& app);
 void add_compare(CLI::App& app);
+void add_solve(CLI::App& app);
 void add_schema(CLI::App& app);
 
 /// A bar on standard error where that is a terminal, nothing elsewhere; Ctrl-C cancels.

@@ -66,6 +66,7 @@ int main(int count, char** arguments) {
   sardf::add_povray(app);
   sardf::add_compare(app);
   sardf::add_compare_images(app);
+  sardf::add_solve(app);
   sardf::add_schema(app);
   return run(app, count, arguments);
 }

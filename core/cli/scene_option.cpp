@@ -44,6 +44,7 @@ void SceneOption::add_to(CLI::App& command) {
 }
 
 Scene SceneOption::read(const Progress& progress) const {
+  const ProgressScope scope(progress);
   SceneDescription description = read_scene(path);
   if (!blend.empty()) description.blend = blend_from(blend);
   return Scene(std::move(description), progress);

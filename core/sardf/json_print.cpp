@@ -63,6 +63,33 @@ void print(const JsonValue& value, std::string& to) {
   }
 }
 
+bool are_numbers(const std::vector<JsonValue>& elements) {
+  for (const JsonValue& element : elements) {
+    if (!element.is(Type::number)) return false;
+  }
+  return !elements.empty();
+}
+
+// As many on each line as it has room for.
+void print_number_lines(const JsonValue& value, size_t indent, size_t width, std::string& to) {
+  std::string line(indent + 2, ' ');
+  to += "[\n";
+  for (size_t i = 0; i < value.elements.size(); ++i) {
+    const std::string text =
+        number_text(value.elements[i].number) + (i + 1 < value.elements.size() ? "," : "");
+    if (line.size() > indent + 2) {
+      if (line.size() + 1 + text.size() <= width) {
+        line += ' ';
+      } else {
+        to += line + '\n';
+        line.assign(indent + 2, ' ');
+      }
+    }
+    line += text;
+  }
+  to += line + '\n' + std::string(indent, ' ') + ']';
+}
+
 // `used`: characters that stand before the value on its line, and after it.
 void print_lines(const JsonValue& value, size_t indent, size_t used, size_t width,
                  std::string& to) {
@@ -74,6 +101,7 @@ void print_lines(const JsonValue& value, size_t indent, size_t used, size_t widt
     to += line;
     return;
   }
+  if (are_numbers(value.elements)) return print_number_lines(value, indent, width, to);
   const std::string inner(indent + 2, ' ');
   to += is_object ? "{\n" : "[\n";
   for (size_t i = 0; i < n; ++i) {

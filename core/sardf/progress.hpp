@@ -14,4 +14,21 @@ struct Cancelled : std::runtime_error {
   Cancelled() : std::runtime_error("cancelled") {}
 };
 
+/// What long work inside of this scope, on this thread, reports to where its caller cannot pass a
+/// Progress: a field that is solved for while a scene file is read.
+class ProgressScope {
+ public:
+  explicit ProgressScope(Progress progress);
+  ~ProgressScope();
+  ProgressScope(const ProgressScope&) = delete;
+  ProgressScope& operator=(const ProgressScope&) = delete;
+
+  /// Of the innermost scope; empty outside of all.
+  static const Progress& current();
+
+ private:
+  Progress progress_;
+  const ProgressScope* outer_;
+};
+
 }  // namespace sardf

@@ -26,8 +26,11 @@ SceneDescription parse_scene(const std::string& text, const std::string& file,
 /// A rule that gives one number, as {"inverse_distance": {...}}, from text.
 Fractions parse_value_rule(const std::string& text, const std::map<std::string, Field>& fields);
 
+/// Arguments to write in place of those that a field was made with.
+using ReplacedArguments = std::map<const Construction*, std::vector<Value>>;
+
 /// The scene as text that parse_scene reads back to equal expressions. Shared fields are named.
-std::string scene_text(const SceneDescription& scene);
+std::string scene_text(const SceneDescription& scene, const ReplacedArguments& replaced = {});
 /// Writes a temporary file and renames it; "-" writes standard output.
 void write_scene(const std::string& path, const SceneDescription& scene);
 

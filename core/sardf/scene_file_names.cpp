@@ -125,8 +125,8 @@ std::string FieldNames::fresh(const std::string& wanted) {
   return name;
 }
 
-std::string FieldNames::name_of(const Field& field) const {
-  const auto found = names_.find(field.construction());
+std::string FieldNames::name_of(const Construction* made) const {
+  const auto found = names_.find(made);
   return found == names_.end() ? "" : found->second;
 }
 

@@ -20,8 +20,11 @@ class FieldNames {
 
   /// All that must be defined, the scene's own first.
   const std::vector<NamedField>& defined() const { return defined_; }
+  /// All that fields are made by, parts before what is made of them.
+  const std::vector<const Construction*>& constructions() const { return order_; }
   /// "" for a field without a name.
-  std::string name_of(const Field& field) const;
+  std::string name_of(const Field& field) const { return name_of(field.construction()); }
+  std::string name_of(const Construction* made) const;
   /// A formula's text with the names that its fields have here.
   std::string formula_text(const Construction& formula) const;
 
@@ -39,7 +42,7 @@ class FieldNames {
 
   std::map<std::string, double> parameters_;
   std::unordered_map<const Construction*, Use> uses_;
-  std::vector<const Construction*> order_;  // parts before what is made of them
+  std::vector<const Construction*> order_;
   std::unordered_map<const Construction*, std::string> names_;
   std::map<std::string, size_t> numbers_;  // last number given to each stem
   std::set<std::string> taken_;

@@ -74,7 +74,8 @@ bool is_default(const ParameterInfo& info, const Value& value) {
 
 class SceneWriter {
  public:
-  explicit SceneWriter(const SceneDescription& scene) : scene_(scene), names_(scene) {}
+  SceneWriter(const SceneDescription& scene, const ReplacedArguments& replaced)
+      : scene_(scene), replaced_(replaced), names_(scene) {}
 
   JsonValue document() {
     JsonValue top = JsonValue::object();
@@ -147,11 +148,13 @@ class SceneWriter {
   JsonValue definition(const Field& f) const {
     const Construction& made = *f.construction();
     if (!made.constructor) return JsonValue::of(std::string("=").append(names_.formula_text(made)));
+    const auto other = replaced_.find(&made);
+    const std::vector<Value>& values = other == replaced_.end() ? made.arguments : other->second;
     JsonValue arguments = JsonValue::object();
-    for (size_t i = 0; i < made.arguments.size(); ++i) {
+    for (size_t i = 0; i < values.size(); ++i) {
       const ParameterInfo& info = made.constructor->parameters[i];
-      if (is_default(info, made.arguments[i])) continue;
-      arguments.add(info.name, argument(info, made.arguments[i]));
+      if (is_default(info, values[i])) continue;
+      arguments.add(info.name, argument(info, values[i]));
     }
     JsonValue object = JsonValue::object();
     object.add(made.constructor->name, std::move(arguments));
@@ -361,14 +364,15 @@ class SceneWriter {
   }
 
   const SceneDescription& scene_;
+  const ReplacedArguments& replaced_;
   FieldNames names_;
   mutable bool writing_values_ = false;
 };
 
 }  // namespace
 
-std::string scene_text(const SceneDescription& scene) {
-  return pretty_json(SceneWriter(scene).document());
+std::string scene_text(const SceneDescription& scene, const ReplacedArguments& replaced) {
+  return pretty_json(SceneWriter(scene, replaced).document());
 }
 
 void write_scene(const std::string& path, const SceneDescription& scene) {

@@ -182,7 +182,8 @@ inline double number_in(Random& r, Interval i) {
 Field random_field(Random& r, int depth);
 /// A field of this constructor.
 Field random_field(Random& r, const Constructor& constructor, int depth);
-/// Whether random arguments exist: a text or a rule that must be given has none.
+/// Whether random arguments exist: a text, a rule or a file that must be given has none, nor a list
+/// of numbers, which are counts or as many as something else says.
 bool can_be_random(const Constructor& constructor);
 
 }  // namespace sardf::laws

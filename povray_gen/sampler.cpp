@@ -15,6 +15,9 @@ constexpr double first_samples = 36000;
 // Where a function jumps no grid makes the error small; the jump lies within a cell of this one.
 constexpr double most_samples_of_jumps = 2.2e6;
 constexpr int most_along_axis = 65534;
+// An input that changes by less of its size is constant but for rounding, as far as a picture
+// shows: difference quotients along it would be those of the rounding.
+constexpr double thin = 1e-7;
 constexpr size_t points_at_once = 1024;
 constexpr size_t bent_samples = 1024, other_cells = 8192;
 
@@ -99,8 +102,9 @@ SampleGrid Sampler::grid_of(double step) const {
   for (const Interval& side : box_) longest = max(longest, side.hi - side.lo);
   for (int k = 0; k < 3; ++k) {
     const double width = box_[k].hi - box_[k].lo;
-    if (!(width > 0)) continue;
-    const double share = operation_->is_distance() ? width / longest : 1;
+    const bool lengths = operation_->is_distance();
+    if (!(width > thin * max(box_[k].magnitude(), lengths ? longest : 0.0))) continue;
+    const double share = lengths ? width / longest : 1;
     grid.counts[k] = int(std::clamp(std::ceil(share / step) + 1, 2.0, double(most_along_axis)));
   }
   return grid;
@@ -145,8 +149,8 @@ std::vector<double> Sampler::values(size_t n, const std::function<Vec3(size_t)>&
 // Proven: the interpolated value at p is a mean of the cell's corners' with the weights of p, so
 // for a function of slope <= L it is off by at most L × the mean distance of the corners from p.
 // That is at most the root of the mean square, sqrt(sum over axes of t (1 - t) h²) for a point at
-// the share t of a side h: no more than half of the cell's diagonal. The function itself is exact
-// to 1e-9, its samples are rounded.
+// the share t of a side h: no more than half of the cell's diagonal. Along a thin axis all samples
+// lie at one end. The function itself is exact to 1e-9, its samples are rounded.
 SampleError Sampler::error_of(const Samples& samples, Work& work) const {
   const SampleGrid& grid = samples.grid();
   Probes probes(grid);
@@ -161,14 +165,14 @@ SampleError Sampler::error_of(const Samples& samples, Work& work) const {
     error.measured = max(error.measured, std::abs(samples.value(points[i], nullptr) - exact[i]));
   }
   error.measured += samples.rounding();
-  const Interval half_diagonal =
-      sqrt(square(Interval(grid.step(0))) + square(Interval(grid.step(1))) +
-           square(Interval(grid.step(2)))) *
-      0.5;
-  error.proven = lipschitz_ < infinity
-                     ? rounded_up(lipschitz_ * half_diagonal.hi + samples.rounding() +
-                                  1e-8 * samples.range().magnitude())
-                     : infinity;
+  double squares = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double most = grid.varies(k) ? 0.5 * grid.step(k) : box_[k].hi - box_[k].lo;
+    squares += most * most;
+  }
+  error.proven = rounded_up(
+      lipschitz_ * std::sqrt(squares) + samples.rounding() + 1e-8 * samples.range().magnitude(),
+      16);
   return error;
 }
 

@@ -1,6 +1,7 @@
 #include "povray_gen/sampler.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <random>
 
@@ -119,10 +120,12 @@ double Sampler::finest_step(double most_samples) const {
   return high;
 }
 
-std::vector<double> Sampler::values(size_t n, const std::function<Vec3(size_t)>& point,
-                                    Work& work) const {
+// Large arrays are not filled with zeros first: that alone would take longer than a cancel may.
+std::unique_ptr<double[]> Sampler::values(size_t n, const std::function<Vec3(size_t)>& point,
+                                          Work& work) const {
   constexpr size_t block = Evaluator::block_size;
-  std::vector<double> out(n);
+  auto out = std::make_unique_for_overwrite<double[]>(n);
+  std::atomic<size_t> bad{n};
   work.run(n, points_at_once, [&](size_t first, size_t last) {
     std::array<std::array<double, block>, 3> at;
     for (size_t i = first; i < last; i += block) {
@@ -133,14 +136,22 @@ std::vector<double> Sampler::values(size_t n, const std::function<Vec3(size_t)>&
       }
       double* to = &out[i];
       evaluator_.block(at[0].data(), at[1].data(), at[2].data(), count, &to);
+      for (size_t j = i; j < i + count; ++j) {
+        size_t first_bad = bad;
+        while (!std::isfinite(out[j]) && j < first_bad &&
+               !bad.compare_exchange_weak(first_bad, j)) {
+        }
+      }
     }
   });
-  const auto bad = std::find_if(out.begin(), out.end(), [](double v) { return !std::isfinite(v); });
-  if (bad == out.end()) return out;
-  const Vec3 p = point(size_t(bad - out.begin()));
+  if (bad < n) complain_of(point(bad));
+  return out;
+}
+
+void Sampler::complain_of(const Vec3& point) const {
   std::string place;
   for (int k = 0; k < operation_->info().arity; ++k) {
-    place += (k ? ", " : "") + std::string(1, input_names[k]) + " = " + std::to_string(p[k]);
+    place += (k ? ", " : "") + std::string(1, input_names[k]) + " = " + std::to_string(point[k]);
   }
   throw Error("'" + operation_->info().name + "' has no formula, and for its samples no finite " +
               "value where its inputs are " + place);
@@ -157,7 +168,7 @@ SampleError Sampler::error_of(const Samples& samples, Work& work) const {
   for (size_t sample : samples.most_bent(bent_samples, work)) probes.add_around(sample);
   probes.add_others(other_cells);
   const std::vector<Vec3>& points = probes.points();
-  const std::vector<double> exact = values(
+  const auto exact = values(
       points.size(), [&](size_t i) { return points[i]; }, work);
   SampleError error;
   error.points = points.size();
@@ -185,11 +196,11 @@ Sampler::Result Sampler::sample(double aimed, double most_samples, Work& work,
   for (;;) {
     const SampleGrid grid = grid_of(step);
     work.stage(begin + (progress_end - begin) * min(1.0, grid.stored_size() / most_samples));
-    std::vector<double> at_grid = values(
+    auto at_grid = values(
         grid.size(), [&](size_t i) { return grid.point(i); }, work);
     Result result;
-    result.samples = std::make_shared<Samples>(grid, at_grid, work);
-    at_grid = {};
+    result.samples = std::make_shared<Samples>(grid, std::span(at_grid.get(), grid.size()), work);
+    at_grid.reset();
     result.error = error_of(*result.samples, work);
     const Interval range = result.samples->range();
     result.error.aimed = operation_->is_distance() ? aimed : aimed * (range.hi - range.lo);

@@ -16,6 +16,17 @@ constexpr size_t rows_at_once = 64;
 constexpr size_t samples_at_once = 65536;
 constexpr size_t bytes_at_once = 1 << 20;
 
+Interval range_of(std::span<const double> values, Work& work) {
+  std::vector<Interval> parts(values.size() / samples_at_once + 1, {infinity, -infinity});
+  work.run(values.size(), samples_at_once, [&](size_t first, size_t last) {
+    Interval& part = parts[first / samples_at_once];
+    for (size_t i = first; i < last; ++i) part = hull(part, values[i]);
+  });
+  Interval out{infinity, -infinity};
+  for (const Interval& part : parts) out = hull(out, part);
+  return out;
+}
+
 }  // namespace
 
 std::array<int, 3> SampleGrid::position(size_t index) const {
@@ -39,10 +50,10 @@ Vec3 SampleGrid::point(size_t index) const {
 }
 
 Samples::Samples(const SampleGrid& grid, std::span<const double> values, Work& work)
-    : grid_(grid), codes_(values.size()) {
-  const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  low_ = *least;
-  scale_ = (*most - *least) / levels;
+    : grid_(grid), codes_(std::make_unique_for_overwrite<uint32_t[]>(values.size())) {
+  range_ = range_of(values, work);
+  low_ = range_.lo;
+  scale_ = (range_.hi - range_.lo) / levels;
   if (!(scale_ < infinity)) throw Error("values from -1e308 to 1e308 cannot be sampled");
   work.run(values.size(), samples_at_once, [&](size_t first, size_t last) {
     for (size_t i = first; i < last; ++i) {
@@ -50,7 +61,7 @@ Samples::Samples(const SampleGrid& grid, std::span<const double> values, Work& w
       codes_[i] = uint32_t(1 + std::clamp(level, 0.0, levels));
     }
   });
-  range_ = {low_, *most + 1e-15 * max(std::abs(*least), std::abs(*most))};
+  range_.hi += 1e-15 * range_.magnitude();
   bound_slopes(work);
 }
 

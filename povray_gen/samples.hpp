@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -72,7 +73,7 @@ class Samples {
   double bend(size_t index) const;
 
   SampleGrid grid_;
-  std::vector<uint32_t> codes_;  // value = low_ + scale_ × (code - 1)
+  std::unique_ptr<uint32_t[]> codes_;  // value = low_ + scale_ × (code - 1)
   double low_ = 0, scale_ = 0;
   Interval range_;
   std::array<Interval, 3> partials_;

@@ -238,7 +238,7 @@ TEST(PovraySamples, OfNearestPointsAreRightAwayFromWhereTheyJump) {
   }
 }
 
-TEST(PovraySamples, OfJumpsAreNotRefinedInVain) {
+TEST(PovraySamplesSlow, OfJumpsAreNotRefinedInVain) {
   const auto set = std::make_shared<TestPoints>("dots", three_points);
   const Expression exact = call(nearest_operation(set, 0), {X, Y, Z});
   const SceneText text = povray::scene_text(scene_with({{"near", exact}}), "part.inc");

@@ -242,7 +242,8 @@ std::string FunctionWriter::declare_samples(const SampledFunction& sampled) {
         own.apply("min", {own.apply("max", {place, own.number(0)}), own.number(last)}));
   }
   const int scaled = own.apply("*", {own.number(samples.factor()), own.apply(file, places)});
-  const int root = own.apply("+", {own.number(samples.offset()), scaled});
+  const int sum = own.apply("+", {own.number(samples.offset()), scaled});
+  const int root = own.apply("max", {own.number(samples.range().lo), sum});
   printer_.declare(name, own, root, sampled.info().arity, input_names(sampled.info()));
   return name;
 }

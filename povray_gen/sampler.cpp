@@ -1,6 +1,7 @@
 #include "povray_gen/sampler.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <random>
 
@@ -15,6 +16,9 @@ constexpr double first_samples = 36000;
 // Where a function jumps no grid makes the error small; the jump lies within a cell of this one.
 constexpr double most_samples_of_jumps = 2.2e6;
 constexpr int most_along_axis = 65534;
+// An input that changes by less of its size is constant but for rounding, as far as a picture
+// shows: difference quotients along it would be those of the rounding.
+constexpr double thin = 1e-7;
 constexpr size_t points_at_once = 1024;
 constexpr size_t bent_samples = 1024, other_cells = 8192;
 
@@ -99,8 +103,9 @@ SampleGrid Sampler::grid_of(double step) const {
   for (const Interval& side : box_) longest = max(longest, side.hi - side.lo);
   for (int k = 0; k < 3; ++k) {
     const double width = box_[k].hi - box_[k].lo;
-    if (!(width > 0)) continue;
-    const double share = operation_->is_distance() ? width / longest : 1;
+    const bool lengths = operation_->is_distance();
+    if (!(width > thin * max(box_[k].magnitude(), lengths ? longest : 0.0))) continue;
+    const double share = lengths ? width / longest : 1;
     grid.counts[k] = int(std::clamp(std::ceil(share / step) + 1, 2.0, double(most_along_axis)));
   }
   return grid;
@@ -115,10 +120,12 @@ double Sampler::finest_step(double most_samples) const {
   return high;
 }
 
-std::vector<double> Sampler::values(size_t n, const std::function<Vec3(size_t)>& point,
-                                    Work& work) const {
+// Large arrays are not filled with zeros first: that alone would take longer than a cancel may.
+std::unique_ptr<double[]> Sampler::values(size_t n, const std::function<Vec3(size_t)>& point,
+                                          Work& work) const {
   constexpr size_t block = Evaluator::block_size;
-  std::vector<double> out(n);
+  auto out = std::make_unique_for_overwrite<double[]>(n);
+  std::atomic<size_t> bad{n};
   work.run(n, points_at_once, [&](size_t first, size_t last) {
     std::array<std::array<double, block>, 3> at;
     for (size_t i = first; i < last; i += block) {
@@ -129,14 +136,22 @@ std::vector<double> Sampler::values(size_t n, const std::function<Vec3(size_t)>&
       }
       double* to = &out[i];
       evaluator_.block(at[0].data(), at[1].data(), at[2].data(), count, &to);
+      for (size_t j = i; j < i + count; ++j) {
+        size_t first_bad = bad;
+        while (!std::isfinite(out[j]) && j < first_bad &&
+               !bad.compare_exchange_weak(first_bad, j)) {
+        }
+      }
     }
   });
-  const auto bad = std::find_if(out.begin(), out.end(), [](double v) { return !std::isfinite(v); });
-  if (bad == out.end()) return out;
-  const Vec3 p = point(size_t(bad - out.begin()));
+  if (bad < n) complain_of(point(bad));
+  return out;
+}
+
+void Sampler::complain_of(const Vec3& point) const {
   std::string place;
   for (int k = 0; k < operation_->info().arity; ++k) {
-    place += (k ? ", " : "") + std::string(1, input_names[k]) + " = " + std::to_string(p[k]);
+    place += (k ? ", " : "") + std::string(1, input_names[k]) + " = " + std::to_string(point[k]);
   }
   throw Error("'" + operation_->info().name + "' has no formula, and for its samples no finite " +
               "value where its inputs are " + place);
@@ -145,15 +160,15 @@ std::vector<double> Sampler::values(size_t n, const std::function<Vec3(size_t)>&
 // Proven: the interpolated value at p is a mean of the cell's corners' with the weights of p, so
 // for a function of slope <= L it is off by at most L × the mean distance of the corners from p.
 // That is at most the root of the mean square, sqrt(sum over axes of t (1 - t) h²) for a point at
-// the share t of a side h: no more than half of the cell's diagonal. The function itself is exact
-// to 1e-9, its samples are rounded.
+// the share t of a side h: no more than half of the cell's diagonal. Along a thin axis all samples
+// lie at one end. The function itself is exact to 1e-9, its samples are rounded.
 SampleError Sampler::error_of(const Samples& samples, Work& work) const {
   const SampleGrid& grid = samples.grid();
   Probes probes(grid);
   for (size_t sample : samples.most_bent(bent_samples, work)) probes.add_around(sample);
   probes.add_others(other_cells);
   const std::vector<Vec3>& points = probes.points();
-  const std::vector<double> exact = values(
+  const auto exact = values(
       points.size(), [&](size_t i) { return points[i]; }, work);
   SampleError error;
   error.points = points.size();
@@ -161,14 +176,14 @@ SampleError Sampler::error_of(const Samples& samples, Work& work) const {
     error.measured = max(error.measured, std::abs(samples.value(points[i], nullptr) - exact[i]));
   }
   error.measured += samples.rounding();
-  const Interval half_diagonal =
-      sqrt(square(Interval(grid.step(0))) + square(Interval(grid.step(1))) +
-           square(Interval(grid.step(2)))) *
-      0.5;
-  error.proven = lipschitz_ < infinity
-                     ? rounded_up(lipschitz_ * half_diagonal.hi + samples.rounding() +
-                                  1e-8 * samples.range().magnitude())
-                     : infinity;
+  double squares = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double most = grid.varies(k) ? 0.5 * grid.step(k) : box_[k].hi - box_[k].lo;
+    squares += most * most;
+  }
+  error.proven = rounded_up(
+      lipschitz_ * std::sqrt(squares) + samples.rounding() + 1e-8 * samples.range().magnitude(),
+      16);
   return error;
 }
 
@@ -181,11 +196,11 @@ Sampler::Result Sampler::sample(double aimed, double most_samples, Work& work,
   for (;;) {
     const SampleGrid grid = grid_of(step);
     work.stage(begin + (progress_end - begin) * min(1.0, grid.stored_size() / most_samples));
-    std::vector<double> at_grid = values(
+    auto at_grid = values(
         grid.size(), [&](size_t i) { return grid.point(i); }, work);
     Result result;
-    result.samples = std::make_shared<Samples>(grid, at_grid, work);
-    at_grid = {};
+    result.samples = std::make_shared<Samples>(grid, std::span(at_grid.get(), grid.size()), work);
+    at_grid.reset();
     result.error = error_of(*result.samples, work);
     const Interval range = result.samples->range();
     result.error.aimed = operation_->is_distance() ? aimed : aimed * (range.hi - range.lo);

@@ -26,7 +26,9 @@ class Sampler {
   SampleGrid grid_of(double step) const;
   /// The smallest step whose grid needs no more stored samples.
   double finest_step(double most_samples) const;
-  std::vector<double> values(size_t n, const std::function<Vec3(size_t)>& point, Work& work) const;
+  std::unique_ptr<double[]> values(size_t n, const std::function<Vec3(size_t)>& point,
+                                   Work& work) const;
+  [[noreturn]] void complain_of(const Vec3& point) const;
   SampleError error_of(const Samples& samples, Work& work) const;
 
   OperationPointer operation_;

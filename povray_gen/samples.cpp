@@ -14,6 +14,18 @@ constexpr double whole = 4294967295.0;  // what POV-Ray divides by
 constexpr double levels = whole - 2;
 constexpr size_t rows_at_once = 64;
 constexpr size_t samples_at_once = 65536;
+constexpr size_t bytes_at_once = 1 << 20;
+
+Interval range_of(std::span<const double> values, Work& work) {
+  std::vector<Interval> parts(values.size() / samples_at_once + 1, {infinity, -infinity});
+  work.run(values.size(), samples_at_once, [&](size_t first, size_t last) {
+    Interval& part = parts[first / samples_at_once];
+    for (size_t i = first; i < last; ++i) part = hull(part, values[i]);
+  });
+  Interval out{infinity, -infinity};
+  for (const Interval& part : parts) out = hull(out, part);
+  return out;
+}
 
 }  // namespace
 
@@ -38,10 +50,10 @@ Vec3 SampleGrid::point(size_t index) const {
 }
 
 Samples::Samples(const SampleGrid& grid, std::span<const double> values, Work& work)
-    : grid_(grid), codes_(values.size()) {
-  const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  low_ = *least;
-  scale_ = (*most - *least) / levels;
+    : grid_(grid), codes_(std::make_unique_for_overwrite<uint32_t[]>(values.size())) {
+  range_ = range_of(values, work);
+  low_ = range_.lo;
+  scale_ = (range_.hi - range_.lo) / levels;
   if (!(scale_ < infinity)) throw Error("values from -1e308 to 1e308 cannot be sampled");
   work.run(values.size(), samples_at_once, [&](size_t first, size_t last) {
     for (size_t i = first; i < last; ++i) {
@@ -49,8 +61,7 @@ Samples::Samples(const SampleGrid& grid, std::span<const double> values, Work& w
       codes_[i] = uint32_t(1 + std::clamp(level, 0.0, levels));
     }
   });
-  const double slack = 1e-15 * max(std::abs(*least), std::abs(*most));
-  range_ = {*least - slack, *most + slack};
+  range_.hi += 1e-15 * range_.magnitude();
   bound_slopes(work);
 }
 
@@ -182,7 +193,7 @@ std::vector<size_t> Samples::most_bent(size_t count, Work& work) const {
 // POV-Ray's format: three sizes of 16 bits, then the samples, all with the largest byte first.
 // Sample i lies at i / size, and behind the last one the first follows again: the layer added at
 // the end of each axis keeps that out of our box.
-void Samples::write_to(OutputFile& file) const {
+void Samples::write_to(OutputFile& file, const Progress& progress) const {
   std::string bytes;
   for (int k = 0; k < 3; ++k) {
     bytes += char(grid_.stored(k) >> 8);
@@ -196,10 +207,13 @@ void Samples::write_to(OutputFile& file) const {
                                 std::min(z, grid_.counts[2] - 1)})];
         for (int shift = 24; shift >= 0; shift -= 8) bytes += char(code >> shift);
       }
+      if (bytes.size() < bytes_at_once) continue;
       file.write(bytes);
       bytes.clear();
+      if (progress && !progress(1)) throw Cancelled();
     }
   }
+  file.write(bytes);
 }
 
 }  // namespace sardf::povray

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -15,7 +16,7 @@ namespace sardf::povray {
 /// Points in rows along each axis; x runs fastest.
 struct SampleGrid {
   std::array<Interval, 3> box;         ///< from the first point to the last
-  std::array<int, 3> counts{1, 1, 1};  ///< points along each axis; 1 where the box has no width
+  std::array<int, 3> counts{1, 1, 1};  ///< points along each axis; 1: the value does not change
 
   bool varies(int axis) const { return counts[axis] > 1; }
   double step(int axis) const {
@@ -36,9 +37,9 @@ struct SampleGrid {
 /// interpolation, exact to 3e-16 of the range of values (tried in POV-Ray 3.7.0.10). It stays
 /// between its samples, so that no value leaves [0, 1], where POV-Ray's patterns wrap around, and
 /// its slope is bounded by difference quotients. `interpolate 2` is a Catmull-Rom spline, computed
-/// to 6e-8 only, which normals from differences would show. At equal size it is 80 times better
-/// for smooth functions, which need few samples either way, but only 1.6 to 1.9 times at kinks,
-/// which decide the size of distances' samples.
+/// to 6e-8 only, which normals from differences would show. At equal size it is 80 times better and
+/// more for smooth functions, which need few samples either way, but only 1.5 to 1.9 times at
+/// kinks, which decide the size of distances' samples.
 class Samples {
  public:
   /// `values`: at the grid's points, finite. Throws Cancelled.
@@ -59,18 +60,20 @@ class Samples {
   /// Where the function is farthest from linear: up to `count` samples, at most one of each row.
   std::vector<size_t> most_bent(size_t count, Work& work) const;
 
-  /// A value as offset() + factor() × that of the density file.
+  /// A value as offset() + factor() × that of the density file, or range().lo where rounding makes
+  /// that less: roots and logarithms of distances must not become NaN.
   double offset() const { return low_ - scale_; }
   double factor() const;
-  /// The whole density file.
-  void write_to(OutputFile& file) const;
+  /// The whole density file. The progress is asked after every part whether to go on; throws
+  /// Cancelled.
+  void write_to(OutputFile& file, const Progress& progress = {}) const;
 
  private:
   void bound_slopes(Work& work);
   double bend(size_t index) const;
 
   SampleGrid grid_;
-  std::vector<uint32_t> codes_;  // value = low_ + scale_ × (code - 1)
+  std::unique_ptr<uint32_t[]> codes_;  // value = low_ + scale_ × (code - 1)
   double low_ = 0, scale_ = 0;
   Interval range_;
   std::array<Interval, 3> partials_;

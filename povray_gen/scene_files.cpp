@@ -61,7 +61,7 @@ std::vector<std::string> write_files(const Scene& scene, const SceneFiles& files
   };
   std::vector<std::string> sentences;
   for (const SampledPointer& sampled : made.sampled) {
-    sampled->samples().write_to(begin_file(include.parent_path() / sampled->file()));
+    sampled->samples().write_to(begin_file(include.parent_path() / sampled->file()), progress);
     sentences.push_back(sampled->description());
   }
   begin_file(include).write(made.include);

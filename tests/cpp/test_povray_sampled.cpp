@@ -145,12 +145,15 @@ TEST(PovraySamples, HoldTheErrorForASmoothFunctionAndReachTheOneAimedAt) {
 TEST(PovraySamples, NeedOneLayerOnlyWhereAnInputDoesNotVary) {
   const Expression plane = call(std::make_shared<TestWave>(2), {X, Y});
   const Expression slice = call(points_distance(), {Z, X, constant(0.3)});
-  for (const Expression& exact : {plane, slice}) {
+  const Expression rounded = constant(0.3) + constant(1e-12) * Y;
+  const Expression nearly_slice = call(points_distance(), {Z, X, rounded});
+  for (const Expression& exact : {plane, slice, nearly_slice}) {
     expect_stated_error(exact);
     const SceneText text = povray::scene_text(scene_with({{"a", exact}}), "a.inc", coarse());
     const povray::SampleGrid& grid = text.sampled[0]->samples().grid();
     EXPECT_EQ(grid.counts[2], 1);
     EXPECT_GT(grid.counts[0], 30);
+    EXPECT_LT(text.sampled[0]->samples().steepest(), 2.5);
   }
 }
 
@@ -235,7 +238,7 @@ TEST(PovraySamples, OfNearestPointsAreRightAwayFromWhereTheyJump) {
   }
 }
 
-TEST(PovraySamples, OfJumpsAreNotRefinedInVain) {
+TEST(PovraySamplesSlow, OfJumpsAreNotRefinedInVain) {
   const auto set = std::make_shared<TestPoints>("dots", three_points);
   const Expression exact = call(nearest_operation(set, 0), {X, Y, Z});
   const SceneText text = povray::scene_text(scene_with({{"near", exact}}), "part.inc");
@@ -254,6 +257,33 @@ TEST(PovraySamples, MayBeTheInputsOfOthers) {
   // A distance hands its inputs' errors on as they are.
   EXPECT_LE(largest_difference(exact, points, in_povray(text, "part_near", points)),
             text.sampled[0]->error().proven + text.sampled[1]->error().proven);
+}
+
+// Two samples along x, 0 and another, for which rounding makes less than 0 of the first.
+std::shared_ptr<const povray::Samples> samples_from_zero() {
+  const povray::SampleGrid grid{{Interval{0, 1}, Interval{0}, Interval{0}}, {2, 1, 1}};
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(1, 2);
+  const Progress none;
+  Work work(none);
+  for (;;) {
+    const std::array<double, 2> values{0, uniform(random)};
+    const auto samples = std::make_shared<povray::Samples>(grid, values, work);
+    if (samples->offset() + samples->factor() * (1 / 4294967295.0) < 0) return samples;
+  }
+}
+
+TEST(PovraySamples, AreNotNegativeByRounding) {
+  const auto sampled = std::make_shared<povray::SampledFunction>(
+      std::make_shared<TestWave>(2), samples_from_zero(), povray::SampleError(), "a.df3");
+  povray::Names names("part");
+  povray::FunctionWriter writer(names);
+  const Expression value = call(sampled, {X, Y});
+  const std::string large = writer.declare({"large", constant(1e30) * value});
+  SceneText text;
+  text.include = writer.text();
+  text.sampled = {sampled};
+  EXPECT_EQ(in_povray(text, large, {{0, 0, 0}})[0], 0);
 }
 
 TEST(PovraySamples, AreDescribedInTheIncludeFile) {

@@ -128,7 +128,7 @@ povray::SamplingOptions up_to(double most_samples) {
   return options;
 }
 
-TEST(PovraySampledScene, ASolidOfSamplesLooksAsThatOfItsFormula) {
+TEST(PovraySampledSceneSlow, ASolidOfSamplesLooksAsThatOfItsFormula) {
   const PovrayScene exact = scene_of(exact_ball(), Look::normals);
   const Image reference = rendered(exact, povray::scene_text(exact, "scene.inc"));
   const PovrayScene scene = scene_of(sampled_ball(), Look::normals);
@@ -144,7 +144,7 @@ TEST(PovraySampledScene, ASolidOfSamplesLooksAsThatOfItsFormula) {
   EXPECT_LT(d.worst_color, 0.012);
 }
 
-TEST(PovraySampledScene, SamplesInsideAFormulaLeaveNoHoles) {
+TEST(PovraySampledSceneSlow, SamplesInsideAFormulaLeaveNoHoles) {
   const PovrayScene exact = scene_of(dented_by_formula());
   const Image reference = rendered(exact, povray::scene_text(exact, "scene.inc"));
   const PovrayScene scene = scene_of(dented(sampled_ball()));
@@ -155,7 +155,7 @@ TEST(PovraySampledScene, SamplesInsideAFormulaLeaveNoHoles) {
   EXPECT_EQ(d.off_the_edge, 0);
 }
 
-TEST(PovraySampledScene, WhatTheUserStatesOfTheGradientIsNotBelievedOfSamples) {
+TEST(PovraySampledSceneSlow, WhatTheUserStatesOfTheGradientIsNotBelievedOfSamples) {
   PovrayScene scene = scene_of(sampled_ball());
   scene.stated_lipschitz = 0.5;
   const SceneText text = povray::scene_text(scene, "scene.inc", up_to(40000));

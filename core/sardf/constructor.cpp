@@ -228,6 +228,9 @@ void check_argument(const ParameterInfo& parameter, const Value& value) {
 }
 
 Field make_field(const Constructor& constructor, std::vector<Value> arguments) {
+  for (size_t i = arguments.size(); i < constructor.parameters.size(); ++i) {
+    arguments.push_back(constructor.parameters[i].default_value);
+  }
   for (size_t i = 0; i < arguments.size(); ++i) {
     check_argument(constructor.parameters[i], arguments[i]);
   }

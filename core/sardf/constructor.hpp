@@ -84,7 +84,8 @@ void add_function(OperationPointer operation);
 /// starts with the parameter's name.
 void check_argument(const ParameterInfo& parameter, const Value& value);
 
-/// Checks all arguments and makes the field; errors name the constructor.
+/// Checks all arguments and makes the field; those left out at the end have their defaults. Errors
+/// name the constructor.
 Field make_field(const Constructor& constructor, std::vector<Value> arguments);
 /// By name; throws Error with the nearest name when there is none.
 Field make_field(const std::string& constructor, std::vector<Value> arguments);

@@ -43,10 +43,44 @@ bool is_call_of(const Expression& e, const char* name) {
   return e->type == Node::Type::operation && e->operation->info().name == name;
 }
 
-// ln e without computing an exponential that could overflow: ln exp(a) = a, also as a factor.
+Expression logarithm(const Expression& e);
+
+// A sum so deep is taken as it is.
+constexpr int deepest_sum = 8;
+
+// The positive terms of a sum that has exponentials, each a number, an exponential or a multiple of
+// one; false where it is none.
+bool collect_terms(const Expression& e, std::vector<Expression>& terms, int depth = 0) {
+  if (is_call_of(e, "add") && depth < deepest_sum) {
+    return collect_terms(e->inputs[0], terms, depth + 1) &&
+           collect_terms(e->inputs[1], terms, depth + 1);
+  }
+  const auto is_positive = [](const Expression& a) { return is_constant(a) && a->value > 0; };
+  terms.push_back(e);
+  return is_positive(e) || is_call_of(e, "exp") ||
+         (is_call_of(e, "multiply") &&
+          ((is_positive(e->inputs[0]) && is_call_of(e->inputs[1], "exp")) ||
+           (is_positive(e->inputs[1]) && is_call_of(e->inputs[0], "exp"))));
+}
+
+// ln Σ exp(a_i) = m + ln Σ exp(a_i - m), m the largest.
+Expression logarithm_of_sum(const std::vector<Expression>& terms) {
+  std::vector<Expression> logarithms;
+  for (const Expression& term : terms) logarithms.push_back(logarithm(term));
+  Expression largest = logarithms[0];
+  for (const Expression& a : logarithms) largest = max(largest, a);
+  Expression total = constant(0);
+  for (const Expression& a : logarithms) total = total + exp(a - largest);
+  return largest + log(total);
+}
+
+// ln e without computing an exponential that could overflow: ln exp(a) = a, also as a factor and in
+// a sum.
 Expression logarithm(const Expression& e) {
   const auto plain = [](const Expression& a) { return log(max(a, constant(least_influence))); };
   if (is_constant(e)) return plain(e);
+  std::vector<Expression> terms;
+  if (is_call_of(e, "add") && collect_terms(e, terms)) return logarithm_of_sum(terms);
   if (is_call_of(e, "exp")) return e->inputs[0];
   const bool product = is_call_of(e, "multiply");
   if (product && is_call_of(e->inputs[0], "exp")) {

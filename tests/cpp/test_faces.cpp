@@ -97,39 +97,45 @@ TEST(Faces, OfABoxAreRectangles) {
   for (const Vec3& p : random_points(8, 200, 4)) EXPECT_NEAR(whole.value(p), parts.value(p), 1e-12);
 }
 
-Patch on_a_turned_line(double r0, double z0, double r1, double z1) {
-  return [=](double s, double t) {
-    const double r = r0 + s * (r1 - r0), angle = 2 * std::numbers::pi * t;
-    return Vec3{r * std::cos(angle), r * std::sin(angle), z0 + s * (z1 - z0)};
+// A line turned about z, twice: where one begins and ends the other goes on.
+std::vector<Patch> turned_line(double r0, double z0, double r1, double z1) {
+  const auto from = [=](double start) {
+    return Patch([=](double s, double t) {
+      const double r = r0 + s * (r1 - r0), angle = start + 2 * std::numbers::pi * t;
+      return Vec3{r * std::cos(angle), r * std::sin(angle), z0 + s * (z1 - z0)};
+    });
   };
+  return {from(0), from(2)};
 }
 
 TEST(Faces, OfACylinderAreTwoDiscsAndASide) {
   const Field bar = make_field("cylinder", {Vec3{}, Vec3{0, 0, 1}, 1.5, 4.0});
-  const Patch patches[] = {on_a_turned_line(0, -2, 1.5, -2), on_a_turned_line(0, 2, 1.5, 2),
-                           on_a_turned_line(1.5, -2, 1.5, 2)};
-  for (size_t i = 0; i < 3; ++i) expect_distances(faces_of(bar, {double(i)}), {patches[i]}, 10 + i);
+  const std::vector<Patch> patches[] = {turned_line(0, -2, 1.5, -2), turned_line(0, 2, 1.5, 2),
+                                        turned_line(1.5, -2, 1.5, 2)};
+  for (size_t i = 0; i < 3; ++i) expect_distances(faces_of(bar, {double(i)}), patches[i], 10 + i);
 }
 
 TEST(Faces, OfATiltedCylinderFollowItsAxis) {
   const Vec3 center{1, 0.5, -0.5}, axis{1, 0, 0};
   const Field bar = make_field("cylinder", {center, axis, 1.0, 3.0});
-  const auto turned = [&](const Patch& upright) -> Patch {
-    return [=](double s, double t) {
-      const Vec3 p = upright(s, t);
-      return center + Vec3{p[2], p[0], p[1]};
-    };
+  const auto turned = [&](std::vector<Patch> upright) {
+    for (Patch& patch : upright) {
+      patch = [center, inner = patch](double s, double t) {
+        const Vec3 p = inner(s, t);
+        return center + Vec3{p[2], p[0], p[1]};
+      };
+    }
+    return upright;
   };
-  expect_distances(faces_of(bar, {0}), {turned(on_a_turned_line(0, -1.5, 1, -1.5))}, 20);
-  expect_distances(faces_of(bar, {2}), {turned(on_a_turned_line(1, -1.5, 1, 1.5))}, 21);
+  expect_distances(faces_of(bar, {0}), turned(turned_line(0, -1.5, 1, -1.5)), 20);
+  expect_distances(faces_of(bar, {2}), turned(turned_line(1, -1.5, 1, 1.5)), 21);
 }
 
 TEST(Faces, OfAConeAreTwoDiscsAndASide) {
   const Field cone = make_field("cone", {Vec3{}, Vec3{0, 0, 1}, 2.0, 0.5, 3.0});
-  const Patch patches[] = {on_a_turned_line(0, -1.5, 2, -1.5), on_a_turned_line(0, 1.5, 0.5, 1.5),
-                           on_a_turned_line(2, -1.5, 0.5, 1.5)};
-  for (size_t i = 0; i < 3; ++i)
-    expect_distances(faces_of(cone, {double(i)}), {patches[i]}, 30 + i);
+  const std::vector<Patch> patches[] = {
+      turned_line(0, -1.5, 2, -1.5), turned_line(0, 1.5, 0.5, 1.5), turned_line(2, -1.5, 0.5, 1.5)};
+  for (size_t i = 0; i < 3; ++i) expect_distances(faces_of(cone, {double(i)}), patches[i], 30 + i);
 }
 
 const std::vector<Vec2> arrow{{-2, -1}, {1, -1}, {0.5, 0}, {1, 1.5}, {-2, 1}};
@@ -220,7 +226,8 @@ TEST(Faces, ThatThereAreNotAreErrors) {
 TEST(Faces, ErrorsHaveTheirPlaceInAFile) {
   const std::string text = error_of([] {
     parse_scene(
-        "{\"sardf\": 1, \"fields\": {\"part\": {\"box\": {}},\n\"end\": {\"boundary\": "
+        "{\"sardf\": 1, \"fields\": {\"part\": {\"box\": {\"size\": [1, 1, 1]}},\n\"end\": "
+        "{\"boundary\": "
         "{\"solid\": \"part\", \"faces\": [9]}}},\n\"solid\": \"part\"}",
         "t.json");
   });
@@ -232,7 +239,7 @@ TEST(Faces, ErrorsHaveTheirPlaceInAFile) {
 TEST(Boundary, OfAWholeSolidIsWhatItWas) {
   const auto scene = parse_scene(R"({"sardf": 1, "fields": {"bore": {"cylinder": {"radius": 3}},
       "short": {"boundary": "bore"}, "long": {"boundary": {"solid": "bore", "faces": []}}},
-      "solid": {"sphere": {}}})",
+      "solid": {"sphere": {"radius": 1}}})",
                                  "");
   const Expression expected = abs(scene.fields[0].field.expression());
   EXPECT_EQ(scene.fields[1].field.expression(), expected);

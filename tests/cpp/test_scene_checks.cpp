@@ -158,11 +158,11 @@ TEST(FractionFunctions, AreCheckedWhereTheyCount) {
 
 TEST(FractionFunctions, AreWrittenSoThatTheyReadBack) {
   const auto before = parse_scene(
-      R"({"sardf": 1, "solid": {"sphere": {}}, "fields": {"rest": "=0.1*x", "u": {"point": {"at":
+      R"({"sardf": 1, "solid": {"sphere": {"radius": 1}}, "fields": {"rest": "=0.1*x", "u": {"point": {"at":
           [0, 0, 0]}}}, "materials": {"a": {}, "b": {}, "c": {}},
           "fractions": {"inverse_distance": {"features": [{"at": "u", "fractions":
             {"functions": {"a": "=rest", "b": 0.25, "c": "rest"}}},
-            {"at": {"circle": {}}, "material": "b"}]}}})",
+            {"at": {"circle": {"radius": 1}}, "material": "b"}]}}})",
       "");
   const std::string text = scene_text(before);
   const auto after = parse_scene(text, "");
@@ -207,7 +207,7 @@ TEST(Contradictions, AreNoneWhereValuesAgreeOrFeaturesAreApart) {
 TEST(Contradictions, AreFoundWhereSurfacesTouchInAPoint) {
   const std::string ball = R"({"at": {"boundary": "ball"}, )", wall = R"({"at": "wall", )";
   const std::string fields = R"("ball": {"sphere": {"radius": 0.5, "center": [0.1, 0.2, 0]}},
-      "wall": {"boundary": {"half_space": {"point": [0.6, 0, 0], "normal": "x"}}})";
+      "wall": {"boundary": {"solid": {"half_space": {"point": [0.6, 0, 0], "normal": "x"}}}})";
   const auto all = warnings(scene(features(ball + sic + "}", wall + diamond + "}"), fields));
   ASSERT_EQ(all.size(), 1u);
   EXPECT_THAT(all[0], HasSubstr("touch at (0.6"));
@@ -219,8 +219,8 @@ TEST(Contradictions, OfFunctionsAreFoundWhereTheyDiffer) {
       features(
           R"({"at": "wide", "fractions": {"functions": {"SiC": "=0.5 + 0.1*x", "diamond": "rest"}}})",
           R"({"at": "tall", "fractions": {"functions": {"SiC": 0.55, "diamond": "rest"}}})"),
-      R"("wide": {"boundary": {"half_space": {"normal": "y"}}},
-         "tall": {"boundary": {"half_space": {"normal": "z"}}})");
+      R"("wide": {"boundary": {"solid": {"half_space": {"normal": "y"}}}},
+         "tall": {"boundary": {"solid": {"half_space": {"normal": "z"}}}})");
   EXPECT_EQ(warnings(s).size(), 1u);
 }
 
@@ -231,8 +231,8 @@ TEST(Contradictions, AreFoundInAttributesAndFields) {
             "b": {"segment": {"a": [0, 0, 0], "b": [0, 1, 0]}},
             "F": {"value_of": {"inverse_distance": {"features": [
               {"at": "a", "value": 1}, {"at": "b", "value": "=2 + y"}]}}}},
-          "attributes": {"grain": {"inverse_distance": {"features": [
-            {"at": "a", "value": [1, 0, 0]}, {"at": "b", "value": [0, 1, 0]}]}}}})",
+          "attributes": {"grain": {"value": {"inverse_distance": {"features": [
+            {"at": "a", "value": [1, 0, 0]}, {"at": "b", "value": [0, 1, 0]}]}}}}})",
       ""));
   const auto all = warnings(s);
   ASSERT_EQ(all.size(), 2u);

@@ -119,7 +119,7 @@ TEST(Fit, MeasuresABall) {
 }
 
 // With factor 1 and polynomials of the splines' degree as values, nothing is left.
-TEST(Fit, ReproducesWhatSplinesCan) {
+TEST(FitSlow, ReproducesWhatSplinesCan) {
   for (const double degree : {1.0, 2.0, 3.0, 4.0, 5.0}) {
     FitProblem p;
     p.grid = spline_grid({-1, 0, 2}, {1, 1, 3}, {8, 7, 9}, degree);
@@ -190,7 +190,7 @@ TEST(Fit, PrescribesTheMean) {
   for (const Vec3& at : random_points(p.grid, 100)) EXPECT_NEAR(f.value(at), 5, 1e-8);
 }
 
-TEST(Fit, BoundsHoldEverywhereAndTheMeanToo) {
+TEST(FitSlow, BoundsHoldEverywhereAndTheMeanToo) {
   FitProblem p = bounded();
   FitProblem free = p;
   free.at_least = free.at_most = std::nullopt;
@@ -236,7 +236,7 @@ TEST(Fit, BoundsGiveTheConstrainedMinimum) {
   }
 }
 
-TEST(Fit, DoesNotDependOnTheNumberOfThreads) {
+TEST(FitSlow, DoesNotDependOnTheNumberOfThreads) {
   const FitProblem flat = annulus(12), deep = slab(15), held = bounded();
   for (const FitProblem& p : {flat, deep, held}) {
     std::vector<std::vector<double>> results;
@@ -249,7 +249,7 @@ TEST(Fit, DoesNotDependOnTheNumberOfThreads) {
   }
 }
 
-TEST(Fit, IsCancelledAtOnce) {
+TEST(FitSlow, IsCancelledAtOnce) {
   using Clock = std::chrono::steady_clock;
   const FitProblem p = slab(24);
   for (const double at : {0.0, 0.15, 0.25, 0.4}) {

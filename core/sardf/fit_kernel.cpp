@@ -6,22 +6,43 @@ namespace sardf {
 
 namespace {
 
-// to[a][o][b] = sum over i of table[i][o] * from[a][i][b]; sizes known to the compiler where not 0.
-template <int Inputs, int Outputs, int After>
-void contract_as(const double* table, int inputs, int outputs, int after, const double* from,
-                 double* to, int before) {
-  const int in = Inputs ? Inputs : inputs, out = Outputs ? Outputs : outputs;
-  const int inner = After ? After : after;
+// to[a][o][b] = sum over i of table[i][o] * from[a][i][b].
+void contract_any(const double* table, int in, int out, int after, const double* from, double* to,
+                  int before) {
   for (int a = 0; a < before; ++a) {
-    const double* part = from + a * in * inner;
-    double* sums = to + a * out * inner;
-    std::fill_n(sums, out * inner, 0.0);
+    const double* part = from + a * in * after;
+    double* sums = to + a * out * after;
+    std::fill_n(sums, out * after, 0.0);
     for (int i = 0; i < in; ++i) {
       for (int o = 0; o < out; ++o) {
         const double by = table[i * out + o];
-        for (int b = 0; b < inner; ++b) sums[o * inner + b] += by * part[i * inner + b];
+        for (int b = 0; b < after; ++b) sums[o * after + b] += by * part[i * after + b];
       }
     }
+  }
+}
+
+// The same for 4 and 4, with sums that stay in registers.
+template <int After>
+void contract_four(const double* table, const double* from, double* to, int before) {
+  for (int a = 0; a < before; ++a, from += 4 * After, to += 4 * After) {
+    for (int o = 0; o < 4; ++o) {
+      double sums[After] = {};
+      for (int i = 0; i < 4; ++i) {
+        for (int b = 0; b < After; ++b) sums[b] += table[4 * i + o] * from[After * i + b];
+      }
+      for (int b = 0; b < After; ++b) to[After * o + b] = sums[b];
+    }
+  }
+}
+template <>
+void contract_four<1>(const double* table, const double* from, double* to, int before) {
+  for (int a = 0; a < before; ++a, from += 4, to += 4) {
+    double sums[4] = {};
+    for (int i = 0; i < 4; ++i) {
+      for (int o = 0; o < 4; ++o) sums[o] += table[4 * i + o] * from[i];
+    }
+    std::copy_n(sums, 4, to);
   }
 }
 
@@ -67,16 +88,11 @@ FitKernel::FitKernel(const SplineGrid& grid, int points) : weights_(1), points_(
 
 void FitKernel::contract(const Table& t, const double* from, double* to, int before, int after) {
   const double* entries = t.entries.data();
-  if (t.inputs == 4 && t.outputs == 4 && after == 16) {
-    return contract_as<4, 4, 16>(entries, 4, 4, 16, from, to, before);
-  }
-  if (t.inputs == 4 && t.outputs == 4 && after == 4) {
-    return contract_as<4, 4, 4>(entries, 4, 4, 4, from, to, before);
-  }
-  if (t.inputs == 4 && t.outputs == 4 && after == 1) {
-    return contract_as<4, 4, 1>(entries, 4, 4, 1, from, to, before);
-  }
-  contract_as<0, 0, 0>(entries, t.inputs, t.outputs, after, from, to, before);
+  const bool four = t.inputs == 4 && t.outputs == 4;
+  if (four && after == 16) return contract_four<16>(entries, from, to, before);
+  if (four && after == 4) return contract_four<4>(entries, from, to, before);
+  if (four && after == 1) return contract_four<1>(entries, from, to, before);
+  contract_any(entries, t.inputs, t.outputs, after, from, to, before);
 }
 
 void FitKernel::apply(const Table& table, const double* from, double* to, int before, int after,

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double accepted = 1e-10;
 // By the diagonal alone more digits take too long, and are not needed.
-constexpr double wanted_by_factors = 1e-14, wanted_by_diagonal = 1e-12;
+constexpr double wanted_by_factors = 1e-14, wanted_by_diagonal = 1e-11;
 constexpr int most_iterations = 10000, most_with_factors = 200;
 // Steps without progress after which rounding is the reason.
 constexpr int most_idle = 20;

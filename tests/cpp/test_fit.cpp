@@ -119,7 +119,7 @@ TEST(Fit, MeasuresABall) {
 }
 
 // With factor 1 and polynomials of the splines' degree as values, nothing is left.
-TEST(Fit, ReproducesWhatSplinesCan) {
+TEST(FitSlow, ReproducesWhatSplinesCan) {
   for (const double degree : {1.0, 2.0, 3.0, 4.0, 5.0}) {
     FitProblem p;
     p.grid = spline_grid({-1, 0, 2}, {1, 1, 3}, {8, 7, 9}, degree);
@@ -190,7 +190,7 @@ TEST(Fit, PrescribesTheMean) {
   for (const Vec3& at : random_points(p.grid, 100)) EXPECT_NEAR(f.value(at), 5, 1e-8);
 }
 
-TEST(Fit, BoundsHoldEverywhereAndTheMeanToo) {
+TEST(FitSlow, BoundsHoldEverywhereAndTheMeanToo) {
   FitProblem p = bounded();
   FitProblem free = p;
   free.at_least = free.at_most = std::nullopt;
@@ -205,8 +205,8 @@ TEST(Fit, BoundsHoldEverywhereAndTheMeanToo) {
   EXPECT_NEAR(*least, -0.5, 1e-6);  // both are reached
   EXPECT_NEAR(*most, 1, 1e-6);
   const Interval proven = f.interval({{0, 0, 0}, {1, 1, 0}});
-  EXPECT_GE(proven.lo, -0.5);
-  EXPECT_LE(proven.hi, 1);
+  EXPECT_GE(proven.lo, -0.5 - 1e-15);  // rounded outwards
+  EXPECT_LE(proven.hi, 1 + 1e-15);
   // Between the points of the quadrature little was cut.
   EXPECT_LE(result.report.cut, 0.02);
   EXPECT_GT(result.report.energy_after, without.report.energy_after);
@@ -236,7 +236,7 @@ TEST(Fit, BoundsGiveTheConstrainedMinimum) {
   }
 }
 
-TEST(Fit, DoesNotDependOnTheNumberOfThreads) {
+TEST(FitSlow, DoesNotDependOnTheNumberOfThreads) {
   const FitProblem flat = annulus(12), deep = slab(15), held = bounded();
   for (const FitProblem& p : {flat, deep, held}) {
     std::vector<std::vector<double>> results;
@@ -249,7 +249,7 @@ TEST(Fit, DoesNotDependOnTheNumberOfThreads) {
   }
 }
 
-TEST(Fit, IsCancelledAtOnce) {
+TEST(FitSlow, IsCancelledAtOnce) {
   using Clock = std::chrono::steady_clock;
   const FitProblem p = slab(24);
   for (const double at : {0.0, 0.15, 0.25, 0.4}) {

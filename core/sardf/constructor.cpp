@@ -7,10 +7,10 @@
 #include "sardf/shapes_combine.hpp"
 #include "sardf/shapes_contour.hpp"
 #include "sardf/shapes_domain.hpp"
-#include "sardf/shapes_interpolation.hpp"
-#include "sardf/shapes_normalize.hpp"
 #include "sardf/shapes_features.hpp"
 #include "sardf/shapes_fit.hpp"
+#include "sardf/shapes_interpolation.hpp"
+#include "sardf/shapes_normalize.hpp"
 #include "sardf/shapes_transform.hpp"
 
 namespace sardf {

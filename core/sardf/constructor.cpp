@@ -5,6 +5,7 @@
 #include "sardf/shapes_combine.hpp"
 #include "sardf/shapes_contour.hpp"
 #include "sardf/shapes_domain.hpp"
+#include "sardf/shapes_mesh.hpp"
 #include "sardf/shapes_transform.hpp"
 
 namespace sardf {
@@ -35,6 +36,7 @@ Registry listed() {
   ContourShapes::for_each(add_shape);
   TransformShapes::for_each(add_shape);
   DomainShapes::for_each(add_shape);
+  MeshShapes::for_each(add_shape);
   BlendList::for_each(
       [&]<class B>(std::type_identity<B>) { all.blends.push_back(blend_type_of<B>()); });
   return all;

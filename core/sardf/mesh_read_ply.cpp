@@ -210,7 +210,7 @@ class BodyReader {
     for (const Property& p : element.properties) {
       least += numbers_.in_lines() ? 2 : p.count ? p.count->size : p.type->size;
     }
-    if (least == 0 || element.count <= (numbers_.left() + 1) / least) return;
+    if (least == 0 || element.count <= (numbers_.left() + numbers_.in_lines()) / least) return;
     throw Error("the file is too short for the " + std::to_string(element.count) + " elements '" +
                     element.name + "' that it announces",
                 path_, int(element.line));

@@ -99,11 +99,12 @@ class TextReader {
 }  // namespace
 
 PolygonMesh read_stl(const MeshBytes& file) {
-  // Binary files may begin with "solid", too: their size tells.
+  // Binary files may begin with "solid", too: their size tells, or zeros, which no text has.
   const size_t size = file.bytes.size();
   const size_t facets = size >= header_size ? word_at(file.bytes, header_size - 4) : 0;
   if (size >= header_size && size == header_size + facets * facet_size) return read_binary(file);
-  if (file.bytes.find_first_not_of(" \t\r\n") == file.bytes.find("solid")) {
+  if (file.bytes.find_first_not_of(" \t\r\n") == file.bytes.find("solid") &&
+      file.bytes.find('\0') == std::string::npos) {
     return TextReader(file).read();
   }
   if (size < header_size) {

@@ -124,7 +124,7 @@ class MeshPoints : public PointSet {
 
   Vec3 gradient(const TrianglePoint& found, const Vec3& away, double distance, double sign) const {
     const TriangleTree::Triangle& t = tree_.triangles()[found.triangle];
-    if (found.part == 0 && distance > 0) {
+    if (found.part == 0 && distance > 0 && !t.narrow()) {
       // A face's normal keeps its direction however near the point is.
       const Vec3 normal = unit_normal(t);
       return (dot(away, normal) < 0 ? -sign : sign) * normal;

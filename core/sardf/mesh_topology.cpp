@@ -109,15 +109,19 @@ std::optional<MeshTopology::Fault> MeshTopology::fault() const {
     } while (h != none && h != all[0]);
     several_fans[v] = h == none || walked != all.size();
   });
+  // A triangle without area spoils its neighbours' edges, so it is named first.
+  const auto rank = [&](uint32_t t) {
+    return std::pair(tree_.has_area(triangles[t]), triangles[t].given());
+  };
   uint32_t worst = none;
   for (uint32_t h = 0; h < twins_.size(); ++h) {
-    const TriangleTree::Triangle& t = triangles[h / 3];
-    const bool bad = twins_[h] == none || several_fans[start(h)] || t.thin();
-    if (bad && (worst == none || t.given() < triangles[worst / 3].given())) worst = h;
+    const uint32_t t = h / 3;
+    const bool bad = twins_[h] == none || several_fans[start(h)] || !tree_.has_area(triangles[t]);
+    if (bad && (worst == none || rank(t) < rank(worst / 3))) worst = h;
   }
   if (worst == none) return std::nullopt;
   const uint32_t triangle = worst / 3;
-  if (triangles[triangle].thin()) return Fault{"has no area", triangle};
+  if (!tree_.has_area(triangles[triangle])) return Fault{"has no area", triangle};
   for (uint32_t h = 3 * triangle; h < 3 * triangle + 3; ++h) {
     if (twins_[h] == none) return Fault{edge_fault(h), triangle};
   }

@@ -26,9 +26,11 @@ SceneDescription parse_scene(const std::string& text, const std::string& file,
 /// A rule that gives one number, as {"inverse_distance": {...}}, from text.
 Fractions parse_value_rule(const std::string& text, const std::map<std::string, Field>& fields);
 
-/// The scene as text that parse_scene reads back to equal expressions. Shared fields are named.
+/// The scene as text that parse_scene reads back to equal expressions. Shared fields are named;
+/// files that it names are named as they were given.
 std::string scene_text(const SceneDescription& scene);
-/// Writes a temporary file and renames it; "-" writes standard output.
+/// Writes a temporary file and renames it; "-" writes standard output. Relative names of files
+/// become relative to the folder of `path` (to the current one for "-"), so that they are found.
 void write_scene(const std::string& path, const SceneDescription& scene);
 
 /// The JSON Schema (draft 2020-12) of scene files, generated from the registries.

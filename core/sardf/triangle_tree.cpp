@@ -16,8 +16,10 @@ namespace {
 
 using Float4 = Lanes<Baseline>;
 
-// Thinner triangles are searched as their edges: their normal is lost to rounding.
-constexpr double thinnest = 1e-13;
+// Triangles of less height, by their longest edge, lose accuracy to their normal's rounding.
+constexpr double narrowest = 0.01;
+// Those of even less are lines.
+constexpr double no_height = 1e-14;
 
 struct OnEdge {
   Vec3 point;
@@ -42,6 +44,30 @@ TrianglePoint on_edges(const Vec3& p, const std::array<Vec3, 3>& corners, uint32
     best = {found.point, found.squared, triangle, part};
   }
   return best;
+}
+
+// With the longest edge as base, the height's direction has an error of 1e-16 base / height, which
+// moves points of the triangle by 1e-16 of the base only.
+TrianglePoint on_narrow(const Vec3& p, const std::array<Vec3, 3>& corners, uint32_t triangle) {
+  size_t k = 0;
+  double longest = 0;
+  for (size_t i = 0; i < 3; ++i) {
+    const Vec3 edge = corners[(i + 1) % 3] - corners[i];
+    if (!(dot(edge, edge) > longest)) continue;
+    longest = dot(edge, edge);
+    k = i;
+  }
+  const Vec3 &a = corners[k], base = corners[(k + 1) % 3] - a, side = corners[(k + 2) % 3] - a;
+  const double foot = longest > 0 ? dot(side, base) / longest : 0;
+  const Vec3 height = side - foot * base;
+  const double height_squared = dot(height, height);
+  if (!(height_squared > square(no_height) * longest)) return on_edges(p, corners, triangle);
+  const double along = dot(p - a, base) / longest;
+  const double up = dot(p - a - along * base, height) / height_squared;
+  const double share = along - up * foot;
+  if (up < 0 || share < 0 || up + share > 1) return on_edges(p, corners, triangle);
+  const Vec3 point = a + along * base + up * height;
+  return {point, dot(p - point, p - point), triangle, 0};
 }
 
 // Source: Ericson 2005, "Real-time collision detection", section 5.1.5.
@@ -207,13 +233,7 @@ TriangleTree::TriangleTree(std::span<const Vec3> vertices,
       }
       corner = number[corner];
     }
-    const Vec3 area = area_vector(made);
-    double longest = 0;
-    for (size_t k = 0; k < 3; ++k) {
-      const Vec3 edge = corner(made, (k + 1) % 3) - corner(made, k);
-      longest = std::max(longest, dot(edge, edge));
-    }
-    if (!(dot(area, area) > square(thinnest * longest))) made.tag |= 1;
+    if (!is_higher(made, narrowest)) made.tag |= 1;
     triangles_.push_back(made);
   }
 }
@@ -228,10 +248,22 @@ Vec3 TriangleTree::area_vector(const Triangle& t) const {
   return cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0));
 }
 
+bool TriangleTree::is_higher(const Triangle& t, double share) const {
+  const Vec3 area = area_vector(t);
+  double longest = 0;
+  for (size_t k = 0; k < 3; ++k) {
+    const Vec3 edge = corner(t, (k + 1) % 3) - corner(t, k);
+    longest = std::max(longest, dot(edge, edge));
+  }
+  return dot(area, area) > square(share * longest);
+}
+
+bool TriangleTree::has_area(const Triangle& t) const { return is_higher(t, 10 * no_height); }
+
 TrianglePoint TriangleTree::on(const Vec3& point, uint32_t triangle) const {
   const Triangle& t = triangles_[triangle];
   const Vec3 &a = corner(t, 0), &b = corner(t, 1), &c = corner(t, 2);
-  return t.thin() ? on_edges(point, {a, b, c}, triangle) : on_triangle(point, a, b, c, triangle);
+  return t.narrow() ? on_narrow(point, {a, b, c}, triangle) : on_triangle(point, a, b, c, triangle);
 }
 
 TrianglePoint TriangleTree::nearest(const Vec3& point, uint32_t guess) const {

@@ -28,10 +28,11 @@ class TriangleTree {
  public:
   struct Triangle {
     std::array<uint32_t, 3> corners;
-    uint32_t tag;  // 2 * the triangle as given + whether it is as thin as a line
+    uint32_t tag;  // 2 * the triangle as given + whether it is narrow
 
     uint32_t given() const { return tag >> 1; }
-    bool thin() const { return tag & 1; }
+    /// Whether its height is below a hundredth of its longest edge.
+    bool narrow() const { return tag & 1; }
   };
   /// Boxes of up to four children, in floats rounded outwards; of a missing one, empty.
   struct alignas(64) Node {
@@ -64,10 +65,14 @@ class TriangleTree {
   }
   /// Corners' cross product: twice the area vector.
   Vec3 area_vector(const Triangle& triangle) const;
+  /// Whether its corners are not on a line, as far as rounding can tell.
+  bool has_area(const Triangle& triangle) const;
   /// Corners of the smallest box, local.
   const std::array<Vec3, 2>& bounds() const { return bounds_; }
 
  private:
+  // Whether the height is more than this share of the longest edge.
+  bool is_higher(const Triangle& triangle, double share) const;
   TrianglePoint on(const Vec3& point, uint32_t triangle) const;
   TrianglePoint nearest_to_near(const Vec3& point, uint32_t guess) const;
   TrianglePoint nearest_to_far(const Vec3& from) const;

@@ -158,7 +158,8 @@ std::vector<double> partials_at(const Operation& op, const std::vector<double>& 
 
 bool can_be_random(const Constructor& constructor) {
   for (const ParameterInfo& p : constructor.parameters) {
-    if (p.required && p.type == ParameterType::text) return false;
+    const bool is_given = p.type == ParameterType::text || p.type == ParameterType::path;
+    if (p.required && is_given) return false;
   }
   return true;
 }

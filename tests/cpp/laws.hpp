@@ -180,7 +180,7 @@ inline double number_in(Random& r, Interval i) {
 Field random_field(Random& r, int depth);
 /// A field of this constructor.
 Field random_field(Random& r, const Constructor& constructor, int depth);
-/// Whether random arguments exist: a text that must be given has none.
+/// Whether random arguments exist: a text or a file that must be given has none.
 bool can_be_random(const Constructor& constructor);
 
 }  // namespace sardf::laws

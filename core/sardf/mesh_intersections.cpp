@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
+#include <mutex>
 
 #include "sardf/numbers/lanes.hpp"
-#include "sardf/triangle_tree_build.hpp"
 
 namespace sardf {
 
@@ -141,9 +142,33 @@ class Pair {
   unsigned common_ = 0;
 };
 
-/// The triangles whose boxes meet a box.
+using Bounds = std::array<Vec3, 2>;
+
+Bounds bounds_of(const TriangleTree& tree, uint32_t i) {
+  const TriangleTree::Triangle& t = tree.triangles()[i];
+  const Vec3 &a = tree.corner(t, 0), &b = tree.corner(t, 1), &c = tree.corner(t, 2);
+  Bounds bounds;
+  for (size_t k = 0; k < 3; ++k) {
+    bounds[0][k] = min(a[k], min(b[k], c[k]));
+    bounds[1][k] = max(a[k], max(b[k], c[k]));
+  }
+  return bounds;
+}
+
+bool meet(const Bounds& a, const Bounds& b) {
+  bool apart = false;
+  for (size_t k = 0; k < 3; ++k) apart |= a[0][k] > b[1][k] || b[0][k] > a[1][k];
+  return !apart;
+}
+
+struct Leaf {
+  uint32_t first, last;
+};
+
+/// The leaves, at and after one of them, whose boxes meet that one's.
 template <class Found>
-void for_meeting_boxes(const TriangleTree& tree, const TriangleBox& box, const Found& found) {
+void for_meeting_leaves(const TriangleTree& tree, const TriangleTree::Node& of, size_t child,
+                        const Found& found) {
   std::array<uint32_t, 256> stack;
   size_t size = 0;
   stack[size++] = 0;
@@ -151,59 +176,74 @@ void for_meeting_boxes(const TriangleTree& tree, const TriangleBox& box, const F
     const TriangleTree::Node& node = tree.nodes()[stack[--size]];
     Float4 gap = -std::numeric_limits<float>::infinity();
     for (size_t k = 0; k < 3; ++k) {
-      gap = max(gap, max(Float4::load(node.lo[k].data()) - Float4(double(box.hi[k])),
-                         Float4(double(box.lo[k])) - Float4::load(node.hi[k].data())));
+      gap = max(gap, max(Float4::load(node.lo[k].data()) - Float4(double(of.hi[k][child])),
+                         Float4(double(of.lo[k][child])) - Float4::load(node.hi[k].data())));
     }
     for (size_t i = 0; i < 4; ++i) {
       if (gap.v[i] > 0) continue;
       if (node.count[i] == 0) {
         stack[size++] = node.first[i];
-      } else {
-        for (uint32_t t = node.first[i]; t < node.first[i] + node.count[i]; ++t) found(t);
+      } else if (node.first[i] >= of.first[child]) {
+        found(Leaf{node.first[i], node.first[i] + node.count[i]});
       }
     }
   }
 }
 
-TriangleBox box_of(const TriangleTree& tree, uint32_t i) {
-  const TriangleTree::Triangle& t = tree.triangles()[i];
-  return TriangleBox::around(tree.corner(t, 0), tree.corner(t, 1), tree.corner(t, 2), 0);
-}
+/// The first pair, by its first triangle and then its second, that meets, with its first triangle
+/// in a leaf; `none` twice when there is none.
+class LeafSearch {
+ public:
+  static constexpr uint32_t none = ~0u;
+  using Found = std::pair<uint32_t, uint32_t>;
 
-bool meet(const TriangleBox& a, const TriangleBox& b) {
-  for (size_t k = 0; k < 3; ++k) {
-    if (a.lo[k] > b.hi[k] || b.lo[k] > a.hi[k]) return false;
+  explicit LeafSearch(const TriangleTree& tree) : tree_(tree) {}
+
+  Found first_pair(const TriangleTree::Node& node, size_t child) const {
+    const Leaf leaf{node.first[child], node.first[child] + node.count[child]};
+    std::array<Bounds, TriangleTree::leaf_size> own;
+    for (uint32_t i = leaf.first; i < leaf.last; ++i) own[i - leaf.first] = bounds_of(tree_, i);
+    Found best{none, none};
+    for_meeting_leaves(tree_, node, child, [&](const Leaf& other) {
+      for (uint32_t j = other.first; j < other.last; ++j) {
+        const Bounds bounds = bounds_of(tree_, j);
+        for (uint32_t i = leaf.first; i < std::min(leaf.last, j); ++i) {
+          if (!meet(own[i - leaf.first], bounds) || Found(i, j) > best) continue;
+          if (!Pair(tree_, i, j).is_apart()) best = {i, j};
+        }
+      }
+    });
+    return best;
   }
-  return true;
-}
+
+ private:
+  const TriangleTree& tree_;
+};
 
 }  // namespace
 
 std::optional<std::array<uint32_t, 2>> meeting_triangles(const TriangleTree& tree) {
-  const uint32_t n = uint32_t(tree.triangles().size());
-  std::atomic<uint32_t> first{n};
-  const auto partner = [&](uint32_t i) {
-    const TriangleBox box = box_of(tree, i);
-    uint32_t found = n;
-    for_meeting_boxes(tree, box, [&](uint32_t j) {
-      if (j <= i || j >= found || !meet(box, box_of(tree, j))) return;
-      if (!Pair(tree, i, j).is_apart()) found = j;
-    });
-    return found;
+  const std::vector<TriangleTree::Node>& nodes = tree.nodes();
+  const LeafSearch search(tree);
+  std::mutex mutex;
+  LeafSearch::Found best{LeafSearch::none, LeafSearch::none};
+  std::atomic<uint32_t> first{LeafSearch::none};
+  const auto search_leaf = [&](const TriangleTree::Node& node, size_t child) {
+    // After a pair that comes before all of this leaf's, they do not matter.
+    if (node.count[child] == 0 || node.first[child] > first) return;
+    const LeafSearch::Found found = search.first_pair(node, child);
+    if (found.first == LeafSearch::none) return;
+    const std::lock_guard lock(mutex);
+    best = std::min(best, found);
+    first = best.first;
   };
-  constexpr uint32_t grain = 1024;
   tbb::this_task_arena::isolate([&] {
-    tbb::parallel_for(uint32_t(0), (n + grain - 1) / grain, [&](uint32_t part) {
-      for (uint32_t i = part * grain; i < std::min(n, (part + 1) * grain) && i < first; ++i) {
-        if (partner(i) == n) continue;
-        uint32_t known = first;
-        while (i < known && !first.compare_exchange_weak(known, i)) {
-        }
-      }
+    tbb::parallel_for(size_t(0), nodes.size(), [&](size_t i) {
+      for (size_t child = 0; child < 4; ++child) search_leaf(nodes[i], child);
     });
   });
-  if (first == n) return std::nullopt;
-  return std::array<uint32_t, 2>{first, partner(first)};
+  if (best.first == LeafSearch::none) return std::nullopt;
+  return std::array<uint32_t, 2>{best.first, best.second};
 }
 
 }  // namespace sardf

@@ -26,6 +26,9 @@ struct TrianglePoint {
 /// unit a power of two. The tree does not depend on the number of threads.
 class TriangleTree {
  public:
+  /// Most triangles in a leaf.
+  static constexpr size_t leaf_size = 4;
+
   struct Triangle {
     std::array<uint32_t, 3> corners;
     uint32_t tag;  // 2 * the triangle as given + whether it is narrow

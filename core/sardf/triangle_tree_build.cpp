@@ -14,7 +14,7 @@ namespace {
 using Node = TriangleTree::Node;
 using Float4 = Lanes<Baseline>;
 
-constexpr size_t leaf_size = 4;
+constexpr size_t leaf_size = TriangleTree::leaf_size;
 // Smaller parts are built by one thread.
 constexpr size_t grain = 8192;
 constexpr int bins = 16;

@@ -246,7 +246,7 @@ TEST(MeshSign, IntervalsAndSlopesHold) {
         const bool lipschitz = slope.length < infinity;
         finite += lipschitz;
         if (!solid || c.closed) {
-          EXPECT_NEAR(slope.length, 1, 1e-15);
+          EXPECT_NEAR(slope.length, 1, 1e-14);
         }
         double former = 0;
         Vec3 last{};

@@ -125,7 +125,7 @@ void expect_brute(const TriangleMesh& mesh, size_t count, double size) {
   }
 }
 
-TEST(MeshDistance, IsThatToTheNearestOfAllTriangles) {
+TEST(MeshDistanceSlow, IsThatToTheNearestOfAllTriangles) {
   expect_brute(random_triangles(1, 1, 1), 300, 1);
   expect_brute(random_triangles(7, 0.5, 2), 500, 1);
   expect_brute(random_triangles(500, 0.1, 3), 700, 1);
@@ -295,7 +295,7 @@ TEST(MeshDistance, OfSomeFaces) {
 TEST(MeshDistance, ThreadsChangeNothing) {
   const auto distances = [](size_t threads) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-    const auto data = data_of(icosphere(6));
+    const auto data = data_of(icosphere(5));
     const auto set = solid_of_mesh(data, "auto").set;
     const Evaluator evaluator(
         call(distance_operation(set), {coordinate(0), coordinate(1), coordinate(2)}));

@@ -3,7 +3,6 @@
 #include <iostream>
 
 #include "cli/commands.hpp"
-#include "cli/write_text.hpp"
 #include "sardf/scene_file.hpp"
 #include "sardf/scene_solution.hpp"
 
@@ -67,7 +66,9 @@ void solve_scene(const Options& options) {
   // The table must not mix with a scene on the standard output.
   std::ostream& to = options.output == "-" ? std::cerr : std::cout;
   to << (solved.empty() ? "no field is fitted\n" : table_of(rows));
-  if (!options.output.empty()) write_text(options.output, solved_scene_text(scene));
+  if (!options.output.empty()) {
+    write_scene(options.output, scene, solved_arguments(scene));
+  }
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "sardf/shapes_features.hpp"
 #include "sardf/shapes_fit.hpp"
 #include "sardf/shapes_interpolation.hpp"
+#include "sardf/shapes_mesh.hpp"
 #include "sardf/shapes_normalize.hpp"
 #include "sardf/shapes_transform.hpp"
 
@@ -47,6 +48,7 @@ Registry listed() {
   NormalizeShapes::for_each(add_shape);
   CalculusShapes::for_each(add_shape);
   FitShapes::for_each(add_shape);
+  MeshShapes::for_each(add_shape);
   BlendList::for_each(
       [&]<class B>(std::type_identity<B>) { all.blends.push_back(blend_type_of<B>()); });
   return all;

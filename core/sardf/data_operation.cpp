@@ -130,6 +130,12 @@ PointSet::PointSet(std::string name, std::string doc, std::span<const double> da
   serial_ = ++made;
 }
 
+Nearest PointSet::nearest_beside(const Vec3& point, const Vec3&, const Nearest&) const {
+  return nearest(point);
+}
+
+bool PointSet::may_jump(const Vec3&, double) const { return false; }
+
 double PointSet::accuracy(double distance) const {
   double size = 0;
   for (const Interval& side : bounds()) size = max(size, side.magnitude());
@@ -171,7 +177,11 @@ class RecentSearches {
         // Blocks are filled up with copies of their last point.
         const bool again = i > 0 && in[0][i] == in[0][i - 1] && in[1][i] == in[1][i - 1] &&
                            in[2][i] == in[2][i - 1];
-        found[i] = again ? found[i - 1] : set.nearest({in[0][i], in[1][i], in[2][i]});
+        const Vec3 point{in[0][i], in[1][i], in[2][i]};
+        found[i] = again   ? found[i - 1]
+                   : i > 0 ? set.nearest_beside(point, {in[0][i - 1], in[1][i - 1], in[2][i - 1]},
+                                                found[i - 1])
+                           : set.nearest(point);
       }
       serial = set.serial();
     }
@@ -208,7 +218,7 @@ class DistanceOperation final : public DataOperation {
   explicit DistanceOperation(PointSetPointer set)
       : DataOperation({set->name(), set->kind(), 3, set->doc()}, set->identity()), set_(set) {}
 
-  bool is_distance() const override { return true; }
+  bool is_distance() const override { return !set_->may_jump({}, infinity); }
 
   void evaluate(const double* const* in, double* out, size_t n) const override {
     const std::vector<Nearest>& found = searched(*set_, in, n);
@@ -235,14 +245,21 @@ class DistanceOperation final : public DataOperation {
     // The value at any point of the box has the search's error, too.
     const double most = ball.radius + 2 * set_->accuracy(std::abs(d) + ball.radius);
     Interval value{rounded_down(d - most), rounded_up(d + most)};
+    if (set_->may_jump(ball.centre, ball.radius)) {
+      value.hi = rounded_up(std::abs(d) + most);
+      value.lo = -value.hi;
+    }
     if (set_->kind() == Kind::feature) value.lo = max(value.lo, 0.0);
     return value;
   }
 
   Slope slope(const Slope* in) const override {
     const std::array<Interval, 3> values{in[0].value, in[1].value, in[2].value};
-    const std::array<Interval, 3> partials{Interval{-1, 1}, Interval{-1, 1}, Interval{-1, 1}};
-    return slope_from(in, interval(values.data()), partials, 1);
+    const Ball ball = ball_around(values.data());
+    const bool jumps = set_->may_jump(ball.centre, ball.radius);
+    const Interval partial = jumps ? Interval::all() : Interval{-1, 1};
+    const std::array<Interval, 3> partials{partial, partial, partial};
+    return slope_from(in, interval(values.data()), partials, jumps ? infinity : 1);
   }
 
   // The gradient of a distance points away from the nearest point.

@@ -66,6 +66,12 @@ class PointSet {
 
   /// Exact to 1e-9 of the distance, or 1e-12 of the set's size where that is more.
   virtual Nearest nearest(const Vec3& point) const = 0;
+  /// The same, where the answer for a point `beside` it is known: that may save time, and changes
+  /// nothing.
+  virtual Nearest nearest_beside(const Vec3& point, const Vec3& beside, const Nearest& known) const;
+  /// Whether, in this ball or its neighbourhood, the distance may change its sign where it is not
+  /// 0: there it is no distance, and its slope is infinite. With an infinite radius: anywhere.
+  virtual bool may_jump(const Vec3& centre, double radius) const;
   /// Derivatives of the nearest point by the point: row k is the gradient of its coordinate k.
   virtual std::array<Vec3, 3> jacobian(const Vec3& point, const Nearest& at) const = 0;
   /// Encloses the set.

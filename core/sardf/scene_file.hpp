@@ -29,10 +29,13 @@ Fractions parse_value_rule(const std::string& text, const std::map<std::string, 
 /// Arguments to write in place of those that a field was made with.
 using ReplacedArguments = std::map<const Construction*, std::vector<Value>>;
 
-/// The scene as text that parse_scene reads back to equal expressions. Shared fields are named.
+/// The scene as text that parse_scene reads back to equal expressions. Shared fields are named;
+/// files that it names are named as they were given.
 std::string scene_text(const SceneDescription& scene, const ReplacedArguments& replaced = {});
-/// Writes a temporary file and renames it; "-" writes standard output.
-void write_scene(const std::string& path, const SceneDescription& scene);
+/// Writes a temporary file and renames it; "-" writes standard output. Relative names of files
+/// become relative to the folder of `path` (to the current one for "-"), so that they are found.
+void write_scene(const std::string& path, const SceneDescription& scene,
+                 const ReplacedArguments& replaced = {});
 
 /// The JSON Schema (draft 2020-12) of scene files, generated from the registries.
 std::string scene_schema();

@@ -1,5 +1,7 @@
 #include <cmath>
+#include <filesystem>
 #include <iostream>
+#include <optional>
 #include <utility>
 
 #include "sardf/constructor.hpp"
@@ -72,10 +74,25 @@ bool is_default(const ParameterInfo& info, const Value& value) {
       value);
 }
 
+// The file's name in a scene of this folder; an absolute name stays.
+std::string path_from(const std::string& folder, const FilePath& file) {
+  namespace fs = std::filesystem;
+  if (fs::path(file.text).is_absolute()) return file.text;
+  std::error_code error;
+  const auto whole = [&](const std::string& path) {
+    return fs::weakly_canonical(fs::absolute(path.empty() ? "." : path, error), error);
+  };
+  const fs::path from = whole(file.folder), to = whole(folder);
+  if (error || from == to) return file.text;
+  return whole(file.full()).lexically_proximate(to).generic_string();
+}
+
 class SceneWriter {
  public:
-  SceneWriter(const SceneDescription& scene, const ReplacedArguments& replaced)
-      : scene_(scene), replaced_(replaced), names_(scene) {}
+  /// `folder`: that the names of files become relative to; none: they stay as they were given.
+  SceneWriter(const SceneDescription& scene, const ReplacedArguments& replaced,
+              std::optional<std::string> folder = {})
+      : scene_(scene), replaced_(replaced), names_(scene), folder_(std::move(folder)) {}
 
   JsonValue document() {
     JsonValue top = JsonValue::object();
@@ -188,7 +205,7 @@ class SceneWriter {
             for (const auto& row : a) list.add(points(row));
             return list;
           } else if constexpr (std::is_same_v<T, FilePath>) {
-            return JsonValue::of(a.text);
+            return JsonValue::of(folder_ ? path_from(*folder_, a) : a.text);
           } else if constexpr (std::is_same_v<T, RulePointer>) {
             return value_rule(a);
           } else if constexpr (std::is_same_v<T, std::monostate>) {
@@ -366,6 +383,7 @@ class SceneWriter {
   const SceneDescription& scene_;
   const ReplacedArguments& replaced_;
   FieldNames names_;
+  std::optional<std::string> folder_;
   mutable bool writing_values_ = false;
 };
 
@@ -375,8 +393,11 @@ std::string scene_text(const SceneDescription& scene, const ReplacedArguments& r
   return pretty_json(SceneWriter(scene, replaced).document());
 }
 
-void write_scene(const std::string& path, const SceneDescription& scene) {
-  const std::string text = scene_text(scene);
+void write_scene(const std::string& path, const SceneDescription& scene,
+                 const ReplacedArguments& replaced) {
+  const std::string folder =
+      path == "-" ? "." : (std::filesystem::path(".") / path).parent_path().string();
+  const std::string text = pretty_json(SceneWriter(scene, replaced, folder).document());
   if (path == "-") {
     std::cout << text;
     return;

@@ -1,6 +1,5 @@
 #include "sardf/scene_solution.hpp"
 
-#include "sardf/scene_file.hpp"
 #include "sardf/scene_file_names.hpp"
 #include "sardf/shapes_fit.hpp"
 
@@ -49,14 +48,14 @@ std::vector<SolvedField> solve_fields(const SceneDescription& scene, const Progr
   return all;
 }
 
-std::string solved_scene_text(const SceneDescription& scene, const Progress& progress) {
+ReplacedArguments solved_arguments(const SceneDescription& scene, const Progress& progress) {
   ReplacedArguments replaced;
   for (const Solution& each : solutions(scene, progress)) {
     std::vector<Value> arguments = each.made->arguments;
     arguments[place_of_coefficients(*each.made->constructor)] = each.field.result->coefficients;
     replaced[each.made] = std::move(arguments);
   }
-  return scene_text(scene, replaced);
+  return replaced;
 }
 
 }  // namespace sardf

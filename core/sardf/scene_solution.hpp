@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sardf/fit.hpp"
-#include "sardf/scene.hpp"
+#include "sardf/scene_file.hpp"
 
 namespace sardf {
 
@@ -19,8 +19,8 @@ struct SolvedField {
 /// coefficients are solved again. Throws Error that names the field, Cancelled.
 std::vector<SolvedField> solve_fields(const SceneDescription& scene, const Progress& progress = {});
 
-/// scene_text with the coefficients of every `fitted` field, from solve_fields. Reading it solves
-/// nothing and gives equal expressions.
-std::string solved_scene_text(const SceneDescription& scene, const Progress& progress = {});
+/// The arguments of every `fitted` field with its coefficients, from solve_fields, for scene_text
+/// and write_scene. Reading what they write solves nothing and gives equal expressions.
+ReplacedArguments solved_arguments(const SceneDescription& scene, const Progress& progress = {});
 
 }  // namespace sardf

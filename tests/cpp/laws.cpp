@@ -174,7 +174,7 @@ std::vector<double> partials_at(const Operation& op, const std::vector<double>& 
 bool can_be_random(const Constructor& constructor) {
   for (const ParameterInfo& p : constructor.parameters) {
     const bool has_none = p.type == ParameterType::text || p.type == ParameterType::rule ||
-                          p.type == ParameterType::numbers;
+                          p.type == ParameterType::path || p.type == ParameterType::numbers;
     if (p.required && has_none) return false;
   }
   return true;

@@ -343,7 +343,7 @@ TEST(FittedScene, CarriesItsSolution) {
   ASSERT_EQ(solved.size(), 1u);
   EXPECT_EQ(solved[0].name, "F");
   EXPECT_EQ(solved[0].result->coefficients.size(), 81u);
-  const std::string text = solved_scene_text(read);
+  const std::string text = scene_text(read, solved_arguments(read));
   EXPECT_THAT(text, HasSubstr("\"coefficients\""));
   const SceneDescription again = parse_scene(text, "s");
   EXPECT_EQ(again.fields[1].field.expression(), read.fields[1].field.expression());

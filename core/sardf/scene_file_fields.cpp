@@ -56,7 +56,7 @@ void collect_names(const JsonValue& value, std::vector<std::string>& names) {
       collect_names(*argument, names);
     }
     if (info.type == ParameterType::rule) collect_all_names(*argument, names);
-    if (info.type == ParameterType::fields) {
+    if (info.type == ParameterType::fields || info.type == ParameterType::values) {
       for (const JsonValue& element : argument->elements) collect_names(element, names);
     }
     if (info.type == ParameterType::sections) {

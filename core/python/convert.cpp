@@ -217,6 +217,7 @@ Value value_from(const ParameterInfo& p, const py::handle& value) {
     case ParameterType::field:
       return field_from(value, p.name);
     case ParameterType::fields:
+    case ParameterType::values:
       return fields_from(p, value);
     case ParameterType::sections:
       return sections_from(p, value);

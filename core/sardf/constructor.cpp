@@ -165,6 +165,8 @@ std::string type_name(ParameterType type) {
     case ParameterType::optional_field:
       return "a field";
     case ParameterType::fields:
+      return "a list of fields";
+    case ParameterType::values:
       return "a list of fields or numbers";
     case ParameterType::sections:
       return "a list of objects such as {\"field\": \"contour\", \"z\": 2}";

@@ -31,6 +31,7 @@ enum class ParameterType {
   field,
   optional_field,
   fields,
+  values,
   sections,
   rule,
   path,

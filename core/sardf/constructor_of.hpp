@@ -13,6 +13,9 @@
 
 namespace sardf {
 
+/// A list of fields that may be numbers: values, not solids.
+struct FieldValues : std::vector<Field> {};
+
 template <class Member>
 constexpr ParameterType parameter_type() {
   if constexpr (std::is_same_v<Member, bool>) return ParameterType::boolean;
@@ -36,6 +39,7 @@ constexpr ParameterType parameter_type() {
   if constexpr (std::is_same_v<Member, std::vector<Vec3>>) return ParameterType::points3;
   if constexpr (std::is_same_v<Member, Field>) return ParameterType::field;
   if constexpr (std::is_same_v<Member, std::vector<Field>>) return ParameterType::fields;
+  if constexpr (std::is_same_v<Member, FieldValues>) return ParameterType::values;
   if constexpr (std::is_same_v<Member, std::vector<PlaneSection>>) return ParameterType::sections;
   if constexpr (std::is_same_v<Member, BlendPointer>) return ParameterType::blend;
 }
@@ -44,6 +48,8 @@ template <class Member>
 Value to_value(const Member& member) {
   if constexpr (std::is_same_v<Member, Axis>) {
     return member.direction;
+  } else if constexpr (std::is_same_v<Member, FieldValues>) {
+    return static_cast<const std::vector<Field>&>(member);
   } else if constexpr (requires { member.has_value(); }) {
     return member ? Value(*member) : Value();
   } else {
@@ -55,6 +61,8 @@ template <class Member>
 void from_value(const Value& value, Member& member) {
   if constexpr (std::is_same_v<Member, Axis>) {
     member.direction = std::get<Vec3>(value);
+  } else if constexpr (std::is_same_v<Member, FieldValues>) {
+    static_cast<std::vector<Field>&>(member) = std::get<std::vector<Field>>(value);
   } else if constexpr (requires { member.has_value(); }) {
     if (value.index() != 0) member = std::get<typename Member::value_type>(value);
   } else {

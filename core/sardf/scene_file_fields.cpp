@@ -114,6 +114,7 @@ void collect_argument_names(const JsonValue& value, ParameterType type,
     case ParameterType::rule:
       return collect_value_names(value, names);
     case ParameterType::fields:
+    case ParameterType::values:
       for (const JsonValue& element : value.elements) collect_names(element, names);
       return;
     case ParameterType::sections:

@@ -239,12 +239,14 @@ void ValueReader::check_keys(const JsonPlace& object, const std::vector<std::str
   }
 }
 
-std::optional<std::vector<Field>> ValueReader::fields(const JsonPlace& place) {
-  if (!list(place, type_name(ParameterType::fields))) return std::nullopt;
+std::optional<std::vector<Field>> ValueReader::fields(const JsonPlace& place,
+                                                      const ParameterInfo& info) {
+  if (!list(place, type_name(info.type))) return std::nullopt;
   std::vector<Field> out;
   bool good = true;
   for (size_t i = 0; i < place.value->elements.size(); ++i) {
-    out.push_back(field_or_number(place.element(i)));
+    const JsonPlace element = place.element(i);
+    out.push_back(info.type == ParameterType::values ? field_or_number(element) : field(element));
     good = good && out.back();
   }
   return good ? std::optional(std::move(out)) : std::nullopt;
@@ -339,7 +341,8 @@ std::optional<Value> ValueReader::argument(const JsonPlace& place, const Paramet
       break;
     }
     case ParameterType::fields:
-      read = as_value(fields(place));
+    case ParameterType::values:
+      read = as_value(fields(place, info));
       break;
     case ParameterType::sections:
       read = as_value(sections(place, info));

@@ -94,7 +94,7 @@ class ValueReader {
   std::optional<std::vector<double>> number_list(const JsonPlace& place, const ParameterInfo& info);
   std::optional<PointGrid> point_grid(const JsonPlace& place, const ParameterInfo& info);
   FilePath file_path(const std::string& text) const;
-  std::optional<std::vector<Field>> fields(const JsonPlace& place);
+  std::optional<std::vector<Field>> fields(const JsonPlace& place, const ParameterInfo& info);
   std::optional<PlaneSection> section(const JsonPlace& place);
   std::optional<std::vector<PlaneSection>> sections(const JsonPlace& place,
                                                     const ParameterInfo& info);

@@ -190,7 +190,7 @@ class SceneWriter {
           } else if constexpr (std::is_same_v<T, BlendPointer>) {
             return blend_json(*a);
           } else if constexpr (std::is_same_v<T, std::vector<Field>>) {
-            return field_or_number_list(a);
+            return info.type == ParameterType::values ? field_or_number_list(a) : field_list(a);
           } else if constexpr (std::is_same_v<T, std::vector<PlaneSection>>) {
             JsonValue list = JsonValue::list();
             for (const PlaneSection& section : a) list.add(plane_section(section));

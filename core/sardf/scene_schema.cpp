@@ -124,6 +124,8 @@ JsonValue of_type(ParameterType type, Range range, int at_least) {
     case ParameterType::optional_field:
       return reference("field");
     case ParameterType::fields:
+      return list_of(reference("field"), at_least);
+    case ParameterType::values:
       return list_of(reference("field_or_number"), at_least);
     case ParameterType::sections:
       return list_of(closed(object({{"field", reference("field")}, {"z", number(Range::any)}}),

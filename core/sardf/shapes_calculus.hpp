@@ -14,7 +14,7 @@ struct At {
                                   "A field's values at another point, which three fields give: "
                                   "with [\"=x\", \"=y\", 0] a plane section of it.";
   Field field;
-  std::vector<Field> point;
+  FieldValues point;
   template <class V>
   static void parameters(V& v) {
     v(field_parameter("the field"), &At::field);
@@ -98,7 +98,7 @@ struct CanonicalForm {
           "F_k is the k-th normal derivative on the feature where the "
           "coefficients are numbers or conditioned.";
   Field distance;
-  std::vector<Field> coefficients;
+  FieldValues coefficients;
   std::optional<Field> remainder;
   template <class V>
   static void parameters(V& v) {

@@ -103,14 +103,16 @@ Expression REquivalence::expression() const {
   Symbol smallest(of[0].expression());
   for (const Field& u : of) smallest = min(smallest, Symbol(u.expression()));
   if (of.size() == 1) return smallest.node;
-  // Ratios to the smallest neither overflow nor vanish together.
+  // Ratios to the smallest neither overflow nor vanish together. What limits them and their sum
+  // changes no value, but bounds them.
+  const Symbol zero(0.0), one(1.0);
   Symbol sum;
   for (const Field& u : of) {
-    const Symbol ratio = cosine(smallest, Symbol(u.expression()));
-    sum = sum + pow(ratio, Symbol(order));
+    const Symbol ratio = smallest / Symbol(u.expression());
+    sum = sum + pow(max(zero, min(one, ratio)), Symbol(order));
   }
-  const Symbol joined = smallest * pow(sum, Symbol(-1 / order));
-  return select(smallest <= Symbol(0.0), smallest, joined).node;
+  const Symbol joined = smallest * pow(max(one, sum), Symbol(-1 / order));
+  return select(smallest <= zero, smallest, joined).node;
 }
 
 Quality REquivalence::quality() const {

@@ -55,7 +55,9 @@ std::vector<ListedOperation> list_operations() {
 
 bool takes_fields(const Constructor& constructor) {
   for (const ParameterInfo& p : constructor.parameters) {
-    if (p.type == ParameterType::field || p.type == ParameterType::fields) return true;
+    if (p.type == ParameterType::field || p.type == ParameterType::fields ||
+        p.type == ParameterType::values)
+      return true;
   }
   return false;
 }
@@ -129,7 +131,8 @@ Value random_value(Random& r, const ParameterInfo& info, int depth) {
       [[fallthrough]];
     case ParameterType::field:
       return random_field(r, depth - 1);
-    case ParameterType::fields: {
+    case ParameterType::fields:
+    case ParameterType::values: {
       std::vector<Field> fields;
       int n = info.at_least > 1 ? info.at_least : 1 + r.below(3);
       for (; n > 0; --n) fields.push_back(random_field(r, depth - 1));

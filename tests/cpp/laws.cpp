@@ -62,6 +62,14 @@ bool takes_fields(const Constructor& constructor) {
   return false;
 }
 
+// A surface costs thousands of formulas: it is tested by itself, and in trees curves stand for it.
+bool is_dear(const Constructor& constructor) {
+  for (const ParameterInfo& p : constructor.parameters) {
+    if (p.type == ParameterType::point_grid) return true;
+  }
+  return false;
+}
+
 BlendPointer random_blend(Random& r) {
   const BlendType& type = blend_types()[size_t(r.below(int(blend_types().size())))];
   std::vector<Value> arguments;
@@ -196,7 +204,8 @@ Field random_field(Random& r, const Constructor& constructor, int depth) {
 Field random_field(Random& r, int depth) {
   for (;;) {
     const Constructor& constructor = constructors()[size_t(r.below(int(constructors().size())))];
-    if (!can_be_random(constructor) || takes_fields(constructor) != (depth > 0)) continue;
+    if (!can_be_random(constructor) || is_dear(constructor)) continue;
+    if (takes_fields(constructor) != (depth > 0)) continue;
     return random_field(r, constructor, depth);
   }
 }

@@ -26,9 +26,9 @@ def test_value_of_takes_a_dictionary_with_fields():
         expected = (a * (1 - 1.5 * u) + b * 3) / (a + b)
     expected[1:3] = 1, 3
     np.testing.assert_allclose(field(POINTS), expected, atol=1e-14)
-    scene = sardf.Scene(solid=sardf.sphere(radius=2), fields={"F": field, "near": near})
+    scene = sardf.Scene(solid=sardf.sphere(radius=2), attributes={"hardness": field})
     again = sardf.Scene.from_json(scene.to_json())
-    np.testing.assert_array_equal(again.fields["F"](POINTS), field(POINTS))
+    np.testing.assert_array_equal(again.attributes["hardness"](POINTS), field(POINTS))
 
 
 def test_value_of_says_what_is_wrong():

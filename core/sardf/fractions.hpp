@@ -95,8 +95,8 @@ struct Lowering {
   std::vector<std::string> materials;
   double diagonal = 1;                     // of the scene's bounds: the scale of its tolerances
   size_t components = 0;                   // of a value; 0: fractions
-  std::vector<std::string> names;          // of the components; empty: they have none
   std::vector<Expression> fractions = {};  // of the materials, for values that depend on them
+  std::vector<std::string> names = {};     // of the components; empty: they have none
 };
 
 /// A part of space that a rule blends in: how much of it there is, and what it is made of.

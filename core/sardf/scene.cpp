@@ -254,8 +254,8 @@ void Scene::lower_attributes() {
 }
 
 Lowering Scene::lowering_of(const Attribute& attribute) const {
-  return {material_names(), bounds_.diagonal(), attribute.rule_components,
-          attribute.component_names, fractions_};
+  return {material_names(), bounds_.diagonal(), attribute.rule_components, fractions_,
+          attribute.component_names};
 }
 
 CheckedPlace Scene::checked_place() const {

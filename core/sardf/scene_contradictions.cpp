@@ -15,8 +15,11 @@ namespace {
 constexpr double touching = 1e-9;
 constexpr double smallest_box = 1.0 / 256;
 constexpr int most_boxes = 4000;
-constexpr int most_descents = 400;
-constexpr int most_steps = 80;
+constexpr int most_descents = 150;
+constexpr int most_steps = 60;
+// After some steps a descent that still gains less than this is given up.
+constexpr int steps_of_grace = 4;
+constexpr double least_gain = 0.98;
 // Of the larger of 1 and the values: a difference up to this is none.
 constexpr double same_value = 1e-6;
 // Halvings between two descents.
@@ -190,6 +193,9 @@ class Search {
         c = slope_at(first, next);
         d = slope_at(second, next);
       }
+      if (step >= steps_of_grace && !(c.value + d.value < least_gain * (a.value + b.value))) {
+        return std::nullopt;
+      }
       point = next;
       a = c;
       b = d;
@@ -218,6 +224,8 @@ class Search {
     values_[pair.first].values(*point, found.first_values.data());
     values_[pair.second].values(*point, found.second_values.data());
     if (!differ(found.first_values, found.second_values)) return;
+    // What is left of a descent to 0.
+    for (double& a : found.point) a = std::abs(a) < 10 * touching * diagonal_ ? 0 : a;
     found_.push_back(std::move(found));
     std::erase(pairs_, pair);
   }
@@ -267,9 +275,7 @@ std::vector<Contradiction> find_contradictions(const CheckedRule& checked,
 }
 
 Warning warning_of(const Contradiction& found, const std::vector<std::string>& names) {
-  Vec3 p = found.point;
-  const double size = std::max(1.0, norm(p));
-  for (double& a : p) a = std::abs(a) < touching * size ? 0 : a;
+  const Vec3& p = found.point;
   return {found.owner + ": features " + std::to_string(found.first + 1) + " and " +
           std::to_string(found.second + 1) + " touch at (" + short_number(p[0], 4) + ", " +
           short_number(p[1], 4) + ", " + short_number(p[2], 4) +

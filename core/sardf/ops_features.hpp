@@ -10,7 +10,7 @@ namespace sardf {
 class PointSet;
 
 /// Formulas with a loop over points or segments have at most this many; beyond, the constructor
-/// makes a PointSet with a tree, which is faster in double and, from about there on, in float.
+/// makes a PointSet with a tree, which is faster in double and with gradients.
 inline constexpr size_t most_in_formula = 256;
 
 struct Feature {

@@ -40,11 +40,9 @@ double reference(const Vec3& p, double r, double c, double from, double to) {
   return std::sqrt(best);
 }
 
-Field helix(double radius, double pitch, std::optional<double> start, std::optional<double> end) {
-  return features::feature("helix", {{"radius", radius},
-                                     {"pitch", pitch},
-                                     {"start", start ? Value(*start) : Value()},
-                                     {"end", end ? Value(*end) : Value()}});
+Field helix(double radius, double pitch, const Value& start, const Value& end) {
+  return features::feature("helix",
+                           {{"radius", radius}, {"pitch", pitch}, {"start", start}, {"end", end}});
 }
 
 TEST(Helix, EqualsRefinedSampling) {
@@ -53,9 +51,10 @@ TEST(Helix, EqualsRefinedSampling) {
     const double r = std::pow(10, draw.uniform(-1, 1)),
                  c = draw.uniform(-1, 1) + (i % 2 ? 0.05 : -0.05);
     const double start = draw.uniform(-900, 300), end = start + draw.uniform(5, 1300);
-    const std::optional<double> from = i % 4 < 2 ? std::optional(start) : std::nullopt;
-    const std::optional<double> to = i % 4 % 2 ? std::nullopt : std::optional(end);
-    const Evaluator f(helix(r, turn * c, from, to).expression());
+    const bool starts = i % 4 < 2, ends = i % 2 == 0;
+    const Evaluator f(
+        helix(r, turn * c, starts ? Value(start) : Value(), ends ? Value(end) : Value())
+            .expression());
     for (int k = 0; k < 40; ++k) {
       Vec3 p = draw.point(2 * r);
       p[2] = 4 * turn * std::abs(c) * draw.uniform(-1, 1);
@@ -63,7 +62,7 @@ TEST(Helix, EqualsRefinedSampling) {
       // Beyond any turn that can be nearest where there is no end.
       const double far = 12 * turn;
       const double expected =
-          reference(p, r, c, from ? start * turn / 360 : -far, to ? end * turn / 360 : far);
+          reference(p, r, c, starts ? start * turn / 360 : -far, ends ? end * turn / 360 : far);
       EXPECT_NEAR(f.value(p), expected, 1e-9 * (1 + r)) << "helix " << i << ", point " << k;
     }
   }
@@ -98,8 +97,8 @@ TEST(Helix, IsAsFarAsItsRadiusOnItsAxis) {
 TEST(Helix, IsADistance) {
   Draw draw(33);
   features::expect_distance_laws(helix(2, 3, {}, {}), draw, 4, 100);
-  features::expect_distance_laws(helix(1, -0.5, -400, 700), draw, 3, 100);
-  features::expect_distance_laws(helix(3, 20, 10, {}), draw, 6, 100);
+  features::expect_distance_laws(helix(1, -0.5, -400.0, 700.0), draw, 3, 100);
+  features::expect_distance_laws(helix(3, 20, 10.0, {}), draw, 6, 100);
 }
 
 TEST(Helix, SaysWhatIsWrong) {

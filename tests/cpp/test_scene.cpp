@@ -118,11 +118,12 @@ TEST(Scene, MakesAttributesByRules) {
   SceneDescription scene = two_materials();
   const std::vector<Record> stops{{{0.0, Fractions::value({formula("1"), formula("y")})}},
                                   {{2.0, Fractions::value({formula("3"), formula("0")})}}};
-  scene.attributes.push_back({"grain", "", {}, {}, 1});
+  scene.attributes.push_back({"grain", "", {}, {}, 1, {}, false, {0, 0, 1}});
   scene.attributes[0].rule = make_fractions("ramp", {Field::coordinate(0), stops});
   scene.attributes[0].rule_components = 2;
   const MaterialFunctions index{{"red", formula("1.5")}, {"blue", formula("2.5")}};
-  scene.attributes.push_back({"index", "", {}, make_fractions("of_materials", {index}), 1});
+  scene.attributes.push_back(
+      {"index", "", {}, make_fractions("of_materials", {index}), 1, {}, false, {0, 0, 1}});
   const Scene made(scene);
   const auto& attributes = made.description().attributes;
   EXPECT_EQ(at(attributes[0].components[0].expression(), {1, 4, 0}), 2);

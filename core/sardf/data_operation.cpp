@@ -280,11 +280,12 @@ class NearestOperation final : public DataOperation {
                        "A coordinate of the nearest point."},
                       set->identity()),
         set_(set),
-        axis_(axis) {}
+        axis_(axis),
+        whole_(set->bounds()[size_t(axis)]) {}
 
   void evaluate(const double* const* in, double* out, size_t n) const override {
     const std::vector<Nearest>& found = searched(*set_, in, n);
-    for (size_t i = 0; i < n; ++i) out[i] = found[i].point[axis_];
+    for (size_t i = 0; i < n; ++i) out[i] = coordinate_of(found[i]);
   }
   using DataOperation::evaluate;
 
@@ -292,7 +293,7 @@ class NearestOperation final : public DataOperation {
                 size_t n) const override {
     const std::vector<Nearest>& found = searched(*set_, in, n);
     for (size_t i = 0; i < n; ++i) {
-      out[i] = found[i].point[axis_];
+      out[i] = coordinate_of(found[i]);
       const Vec3 row = set_->jacobian({in[0][i], in[1][i], in[2][i]}, found[i])[size_t(axis_)];
       for (int k = 0; k < 3; ++k) partial[k][i] = row[k];
     }
@@ -300,14 +301,13 @@ class NearestOperation final : public DataOperation {
 
   // The nearest point is no farther from any point of the box than the distance there.
   Interval interval(const Interval* in) const override {
-    const Interval whole = set_->bounds()[size_t(axis_)];
     const Ball ball = ball_around(in);
-    if (!(ball.radius < infinity)) return whole;
+    if (!(ball.radius < infinity)) return whole_;
     const double d = std::abs(set_->nearest(ball.centre).distance);
-    if (std::isnan(d)) return whole;
+    if (std::isnan(d)) return whole_;
     const double reach = d + ball.radius + 2 * set_->accuracy(d + ball.radius);
     const Interval near{rounded_down(in[axis_].lo - reach), rounded_up(in[axis_].hi + reach)};
-    return intersect(whole, near);
+    return intersect(whole_, near);
   }
 
   // It jumps where two points of the set are equally near.
@@ -318,8 +318,14 @@ class NearestOperation final : public DataOperation {
   }
 
  private:
+  // Seen from very far away, rounding would move the point out of the set's bounds.
+  double coordinate_of(const Nearest& found) const {
+    return std::clamp(found.point[axis_], whole_.lo, whole_.hi);
+  }
+
   PointSetPointer set_;
   int axis_;
+  Interval whole_;  // the set, along the axis
 };
 
 }  // namespace

@@ -20,6 +20,7 @@ constexpr Group groups[] = {
     {"boolean", "Joining fields"},
     {"value", "Changing a field's value"},
     {"transform", "Moving a field"},
+    {"function", "Functions of points and distances: they count as formulas do"},
 };
 
 std::string number_text(double a) {

@@ -166,12 +166,15 @@ std::vector<Expression> lower(const Fractions& fractions, const Lowering& loweri
 
 Expression feature_distance(const Field& field) {
   const Construction* made = field.construction();
-  // A feature that is moved, or whose parts are joined otherwise, is a feature.
-  while (made && made->constructor &&
-         (made->constructor->group == "transform" || made->constructor->name == "with_blend")) {
+  // A feature that is moved or normalised, or whose parts are joined otherwise, is a feature.
+  const auto keeps_its_kind = [](const Constructor& c) {
+    return c.group == "transform" || c.name == "with_blend" || c.name == "normalized";
+  };
+  while (made && made->constructor && keeps_its_kind(*made->constructor)) {
     made = std::get<Field>(made->arguments[0]).construction();
   }
-  if (!made || !made->constructor) return max(constant(0), field.expression());
+  if (!made || !made->constructor || made->constructor->group == "function")
+    return max(constant(0), field.expression());
   if (made->constructor->group == "feature") return field.expression();
   return max(constant(0), -field.expression());
 }

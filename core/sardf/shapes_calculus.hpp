@@ -9,7 +9,7 @@
 namespace sardf {
 
 struct At {
-  static constexpr const char *name = "at", *group = "value",
+  static constexpr const char *name = "at", *group = "transform",
                               *doc =
                                   "A field's values at another point, which three fields give: "
                                   "with [\"=x\", \"=y\", 0] a plane section of it.";
@@ -27,7 +27,7 @@ struct At {
 };
 
 struct Derivative {
-  static constexpr const char *name = "derivative", *group = "value",
+  static constexpr const char *name = "derivative", *group = "function",
                               *doc =
                                   "The derivative of a field along a direction, per scene unit. "
                                   "At a kink it is that of the branch that gives the value; where "
@@ -44,7 +44,7 @@ struct Derivative {
 };
 
 struct GradientLength {
-  static constexpr const char *name = "gradient_length", *group = "value",
+  static constexpr const char *name = "gradient_length", *group = "function",
                               *doc = "How steep a field is: the length of its gradient.";
   Field field;
   template <class V>
@@ -56,7 +56,7 @@ struct GradientLength {
 };
 
 struct NormalDerivative {
-  static constexpr const char *name = "normal_derivative", *group = "value",
+  static constexpr const char *name = "normal_derivative", *group = "function",
                               *doc =
                                   "The product of two fields' gradients: for a distance the "
                                   "derivative of the field away from its feature.";
@@ -72,7 +72,7 @@ struct NormalDerivative {
 
 /// Source: section 2.2, after eq. (4).
 struct Conditioned {
-  static constexpr const char *name = "conditioned", *group = "value",
+  static constexpr const char *name = "conditioned", *group = "function",
                               *doc =
                                   "A field F made constant along the normals of a feature: F(p - u "
                                   "grad u), for an exact distance u the value at the feature's "
@@ -91,7 +91,7 @@ struct Conditioned {
 struct CanonicalForm {
   static constexpr const char
       *name = "canonical_form",
-      *group = "value",
+      *group = "function",
       *doc =
           "The distance canonical form: the sum of F_k u^k / k! over the "
           "coefficients F_0, F_1, ..., F_m, plus u^(m+1) times a remainder. "
@@ -118,7 +118,7 @@ struct CanonicalForm {
 struct Taylor {
   static constexpr const char
       *name = "taylor",
-      *group = "value",
+      *group = "function",
       *doc =
           "The first terms of the Taylor series, at u = 0, of a function of "
           "the distance u; or some of them, counted from 1.";

@@ -42,8 +42,12 @@ std::array<int, 3> checked_counts(const Repeat& repeat) {
 
 // The middle of the solid, from which it is tried to prove that it fits between its neighbours.
 Vec3 middle(const Field& field) {
+  const Evaluator evaluator(field.expression());
+  // A feature's distance is negative nowhere: a search for its bounds would look everywhere.
+  const Vec3 ends{infinity, infinity, infinity};
+  if (evaluator.interval({-1.0 * ends, ends}).lo >= 0) return {};
   try {
-    return certified_bounds(Evaluator(field.expression())).center();
+    return certified_bounds(evaluator).center();
   } catch (const Error&) {
     return {};  // unbounded along an axis without steps, say
   }

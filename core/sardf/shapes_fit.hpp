@@ -9,7 +9,7 @@ namespace sardf {
 
 /// Source: Biswas, Shapiro, Tsukanov, section 2.3: Phi in the remainder term.
 struct SplineField {
-  static constexpr const char *name = "spline_field", *group = "value",
+  static constexpr const char *name = "spline_field", *group = "function",
                               *doc =
                                   "A smooth function on a box: a sum of uniform B-splines, each "
                                   "times a coefficient. Outside the box it has the value of the "
@@ -41,7 +41,7 @@ struct SplineField {
 struct Fitted {
   static constexpr const char
       *name = "fitted",
-      *group = "value",
+      *group = "function",
       *doc =
           "start + factor * Phi, where Phi is a sum of uniform B-splines on "
           "a box that brings the function near to what is wanted: the sum "

@@ -10,7 +10,7 @@ namespace sardf {
 /// P + Φ Π u_i^m_i.
 /// Source: Biswas, Shapiro, Tsukanov 2004, section 3, eqs. (7) to (10).
 struct ValueOf {
-  static constexpr const char *name = "value_of", *group = "value",
+  static constexpr const char *name = "value_of", *group = "function",
                               *doc =
                                   "The number that a rule gives, as a field: values on features, "
                                   "interpolated between them. It is no distance.";

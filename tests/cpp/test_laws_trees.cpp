@@ -3,6 +3,7 @@
 
 #include "laws.hpp"
 #include "sardf/certify.hpp"
+#include "sardf/field_parts.hpp"
 
 namespace sardf {
 namespace {
@@ -30,6 +31,19 @@ Vec3 point_in(Random& r, const BoundingBox& box) {
 std::string text(const BoundingBox& box) {
   return testing::PrintToString(box.lo) + " to " + testing::PrintToString(box.hi) + ", seed " +
          std::to_string(laws::seed());
+}
+
+// "union of sphere, box": the constructors that the field was made by.
+std::string constructors_of(const Field& field) {
+  const Construction* made = field.construction();
+  if (!made || !made->constructor) return "a formula";
+  std::vector<Field> parts;
+  for (const Value& value : made->arguments) append_fields(value, parts);
+  std::string text = made->constructor->name;
+  for (const Field& part : parts) {
+    text += (&part == &parts[0] ? " of (" : ", ") + constructors_of(part);
+  }
+  return parts.empty() ? text : text + ")";
 }
 
 double largest(const Vec3& p) {
@@ -84,8 +98,9 @@ TEST(TreeLaws, BoundsHoldOverRandomBoxes) {
   constexpr int boxes = 20;
   size_t pairs = 0, finite = 0;
   for (int i = 0; i < laws::effort(5000); ++i) {
-    const Evaluator evaluator(
-        laws::random_field(r, r.chance(0.1) ? 3 : 1 + r.below(2)).expression());
+    const Field field = laws::random_field(r, r.chance(0.1) ? 3 : 1 + r.below(2));
+    SCOPED_TRACE(testing::Message() << "tree " << i << ", " << constructors_of(field));
+    const Evaluator evaluator(field.expression());
     for (int k = 0; k < boxes; ++k, ++pairs) {
       const BoundingBox box = random_box(r);
       finite += evaluator.slope(box).length < infinity;

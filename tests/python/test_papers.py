@@ -27,7 +27,7 @@ IMAGES = FOLDER / "images"
 PAPERS = [sardf_page.PAPER, biswas_page.PAPER]
 TEXTS = {paper.name: (FOLDER / f"{paper.name}.md").read_text() for paper in PAPERS}
 # The figures of each paper that its page has.
-FIGURES = {"sardf": range(1, 31), "biswas": (1, 3)}
+FIGURES = {"sardf": range(1, 31), "biswas": range(1, 16)}
 TABLES = {"sardf": ["Table 1"], "biswas": []}
 WITHOUT_PICTURE = [("sardf", "Figure 13"), ("sardf", "Table 1")]
 SHOWN = r"!\[[^\]]+\]\(images/([^)]+)\)"

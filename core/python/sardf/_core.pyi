@@ -6,7 +6,7 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['Blend', 'Cancelled', 'Error', 'Field', 'Mesh', 'MinMax', 'RFunction', 'Sardf', 'SardfC1', 'Scene', 'Smooth', 'arc', 'bend', 'blend_error', 'boundary', 'box', 'box2d', 'capsule', 'circle', 'complement', 'cone', 'cylinder', 'difference', 'disc', 'ellipse', 'ellipsoid', 'extrude', 'formula', 'half_plane', 'half_space', 'implicit_polygon', 'intersection', 'load', 'loft', 'mirror', 'offset', 'point', 'points', 'polygon', 'polyline', 'quadric', 'repeat', 'revolve', 'rotate', 'rounded_box', 'scale', 'schema', 'segment', 'shell', 'sphere', 'torus', 'translate', 'twist', 'union', 'with_blend', 'x', 'y', 'z']
+__all__: list[str] = ['Blend', 'Cancelled', 'Error', 'Field', 'Mesh', 'MinMax', 'RFunction', 'Sardf', 'SardfC1', 'Scene', 'Smooth', 'arc', 'at', 'bend', 'blend_error', 'boundary', 'box', 'box2d', 'bspline_curve', 'bspline_surface', 'canonical_form', 'capsule', 'circle', 'complement', 'conditioned', 'cone', 'cylinder', 'derivative', 'difference', 'disc', 'ellipse', 'ellipsoid', 'extrude', 'fitted', 'formula', 'gradient_length', 'half_plane', 'half_space', 'helix', 'implicit_polygon', 'intersection', 'load', 'loft', 'mesh_solid', 'mesh_surface', 'mirror', 'normal_derivative', 'normalized', 'offset', 'plane', 'point', 'points', 'polygon', 'polyline', 'quadric', 'r_equivalence', 'repeat', 'revolve', 'rotate', 'rounded_box', 'scale', 'schema', 'segment', 'shell', 'skeleton', 'sphere', 'spline_field', 'taylor', 'torus', 'translate', 'trimmed', 'trimmed_segment', 'twist', 'union', 'value_of', 'with_blend', 'x', 'y', 'z']
 class Error(ValueError):
     """
     Bad input. file, line and pointer say where, message what and what is accepted.
@@ -146,9 +146,9 @@ class Scene:
         """
         The surface with texture coordinates for a texture of `size`². resolution: cells along the longest side; cell_size (scene units) instead when > 0. progress(share) may return False to cancel, which raises Cancelled.
         """
-    def povray(self, path: str, render: str = '', camera: typing.Any = None, look: str = 'shaded', width: typing.SupportsInt | typing.SupportsIndex = 640, height: typing.SupportsInt | typing.SupportsIndex = 480, progress: typing.Any = None) -> None:
+    def povray(self, path: str, render: str = '', camera: typing.Any = None, look: str = 'shaded', width: typing.SupportsInt | typing.SupportsIndex = 640, height: typing.SupportsInt | typing.SupportsIndex = 480, samples: typing.SupportsInt | typing.SupportsIndex = 256, progress: typing.Any = None) -> None:
         """
-        Writes path (.pov) and the .inc beside it, for POV-Ray 3.7; renders them to `render` (.exr or .png) unless it is empty. camera: as camera() gives it; look: shaded, flat (the colours alone) or normals.
+        Writes path (.pov), the .inc beside it, and density files (.df3) of what has no formula, whose errors the .inc states, for POV-Ray 3.7; renders them to `render` (.exr or .png) unless it is empty. camera: as camera() gives it; look: shaded, flat (the colours alone) or normals; samples: the most of what has no formula, as the edge of a cube, 8 to 512.
         """
     def save(self, path: str) -> None:
         """
@@ -162,6 +162,10 @@ class Scene:
         """
         The scene as a scene file's text.
         """
+    def warnings(self, progress: typing.Any = None) -> list[str]:
+        """
+        What is accepted but may not be what is meant, as a list of sentences: features that touch with contradicting values, functions not proven to lie in [0, 1].
+        """
     def with_blend(self, blend: Blend) -> Scene:
         """
         The scene with every union, intersection and difference joined by `blend` in place of its own.
@@ -169,7 +173,7 @@ class Scene:
     @property
     def attributes(self) -> dict:
         """
-        {name: function of points (N, 3)}.
+        {name: function of points (N, 3)} that gives (N,), of a vector (N, components), and of named components {name: (N,)}.
         """
     @property
     def bounds(self) -> tuple[typing.Annotated[list[float], "FixedSize(3)"], typing.Annotated[list[float], "FixedSize(3)"]]:
@@ -259,6 +263,15 @@ def arc(center: typing.Sequence[float] = ..., radius: float = ..., start: float 
     start: where it starts, counter-clockwise from +x (degrees)
     end: where it ends: more than start, by at most 360 (degrees)
     """
+def at(field: Field | float | str, point: typing.Sequence[Field | float | str]) -> Field:
+    """
+    at(field, point)
+    
+    A field's values at another point, which three fields give: with ["=x", "=y", 0] a plane section of it.
+    
+    field: the field
+    point: the coordinates x, y, z of the point that it is taken at
+    """
 def bend(field: Field | float | str, radius: float) -> Field:
     """
     bend(field, radius)
@@ -276,13 +289,15 @@ def blend_error(field: Field | float | str) -> Field:
     
     field: the field
     """
-def boundary(solid: Field | float | str) -> Field:
+def boundary(solid: Field | float | str, where: Field | float | str = ..., faces: typing.Sequence[float] | numpy.ndarray = ...) -> Field:
     """
-    boundary(solid)
+    boundary(solid, where=None, faces=())
     
-    The distance to a solid's surface, from either side.
+    The distance to a solid's surface, from either side, or to a part of it.
     
     solid: the solid
+    where: only the part of the surface where this field is not negative; the result is then an estimate of the distance, good to first order away from the part's rim
+    faces: only these faces, exactly. Of a box 0 to 5 are -x, +x, -y, +y, -z, +z; of a cylinder with a height and of a cone 0 is the bottom, 1 the top, 2 the side; edge i of a polygon goes from corner i to the next; an extruded polygon has its edges, then the bottom, then the top. Moved solids keep their numbers
     """
 def box(center: typing.Sequence[float] = ..., size: typing.Sequence[float] = ...) -> Field:
     """
@@ -301,6 +316,43 @@ def box2d(center: typing.Sequence[float] = ..., size: typing.Sequence[float] = .
     
     center: its middle (scene units)
     size: full edge lengths (scene units); positive
+    """
+def bspline_curve(control_points: typing.Sequence[typing.Sequence[float]] | numpy.ndarray, degree: float = ..., knots: typing.Sequence[float] | numpy.ndarray = ..., weights: typing.Sequence[float] | numpy.ndarray = ..., closed: bool = ...) -> Field:
+    """
+    bspline_curve(control_points, degree=3, knots=(), weights=(), closed=False)
+    
+    The distance to a B-spline curve of any degree, rational where weights are given. It starts and ends in its first and last control point unless knots say otherwise or it is closed.
+    
+    control_points: its control points in order, more than the degree (scene units)
+    degree: degree of its pieces: a whole number from 1 to 12
+    knots: its knots, which never fall, as many as control points and degree and 1; none: clamped and uniform
+    weights: a weight for each control point; none: all 1; positive
+    closed: whether it is closed, smoothly and with uniform knots
+    """
+def bspline_surface(control_points: typing.Sequence[typing.Any] | numpy.ndarray, degree_u: float = ..., degree_v: float = ..., knots_u: typing.Sequence[float] | numpy.ndarray = ..., knots_v: typing.Sequence[float] | numpy.ndarray = ..., weights: typing.Sequence[float] | numpy.ndarray = ..., closed_u: bool = ..., closed_v: bool = ...) -> Field:
+    """
+    bspline_surface(control_points, degree_u=3, degree_v=3, knots_u=(), knots_v=(), weights=(), closed_u=False, closed_v=False)
+    
+    The distance to a B-spline surface of any degrees, rational where weights are given, its edges included.
+    
+    control_points: rows of control points, all of one length: u counts the rows, v along them (scene units)
+    degree_u: degree across the rows: a whole number from 1 to 12
+    degree_v: degree along the rows: a whole number from 1 to 12
+    knots_u: knots across the rows, which never fall, as many as rows and degree and 1; none: clamped and uniform
+    knots_v: knots along the rows
+    weights: a weight for each control point, row after row; none: all 1; positive
+    closed_u: whether the last row joins the first, smoothly
+    closed_v: whether the end of each row joins its start, smoothly
+    """
+def canonical_form(distance: Field | float | str, coefficients: typing.Sequence[Field | float | str], remainder: Field | float | str = ...) -> Field:
+    """
+    canonical_form(distance, coefficients, remainder=None)
+    
+    The distance canonical form: the sum of F_k u^k / k! over the coefficients F_0, F_1, ..., F_m, plus u^(m+1) times a remainder. F_k is the k-th normal derivative on the feature where the coefficients are numbers or conditioned.
+    
+    distance: the distance u to the feature
+    coefficients: F_0, F_1, ...: the value on the feature and its normal derivatives
+    remainder: the function that u^(m+1) is multiplied by
     """
 def capsule(a: typing.Sequence[float], b: typing.Sequence[float], radius: float) -> Field:
     """
@@ -330,6 +382,15 @@ def complement(field: Field | float | str) -> Field:
     
     field: the solid
     """
+def conditioned(field: Field | float | str, distance: Field | float | str) -> Field:
+    """
+    conditioned(field, distance)
+    
+    A field F made constant along the normals of a feature: F(p - u grad u), for an exact distance u the value at the feature's nearest point. On the feature it is F.
+    
+    field: the field
+    distance: the distance u to the feature
+    """
 def cone(center: typing.Sequence[float] = ..., axis: str | typing.Sequence[float] = ..., radius_bottom: float = ..., radius_top: float = ..., height: float = ...) -> Field:
     """
     cone(center=(0, 0, 0), axis=(0, 0, 1), radius_bottom, radius_top=0, height)
@@ -352,6 +413,15 @@ def cylinder(center: typing.Sequence[float] = ..., axis: str | typing.Sequence[f
     axis: direction of its axis
     radius: its radius (scene units); positive
     height: full height; none: infinite (scene units); positive
+    """
+def derivative(field: Field | float | str, axis: str | typing.Sequence[float]) -> Field:
+    """
+    derivative(field, axis)
+    
+    The derivative of a field along a direction, per scene unit. At a kink it is that of the branch that gives the value; where a length vanishes there is none: NaN.
+    
+    field: the field
+    axis: the direction
     """
 def difference(*of: Field, blend: Blend = ...) -> Field:
     """
@@ -398,11 +468,44 @@ def extrude(field: Field | float | str, height: float) -> Field:
     field: a field of x and y
     height: full height (scene units); positive
     """
+def fitted(start: Field | float | str, factor: Field | float | str = ..., lower: typing.Sequence[float] = ..., upper: typing.Sequence[float] = ..., splines: typing.Sequence[float] | numpy.ndarray = ..., degree: float = ..., solid: Field | float | str = ..., points: float = ..., values: Field | float | str = ..., values_weight: float = ..., slope: Field | float | str = ..., along: Field | float | str = ..., slope_weight: float = ..., smoothness: float = ..., mean: float = ..., at_least: float = ..., at_most: float = ..., coefficients: typing.Sequence[float] | numpy.ndarray = ...) -> Field:
+    """
+    fitted(start, factor=None, lower, upper, splines, degree=3, solid=None, points=4, values=None, values_weight=1, slope=None, along=None, slope_weight=1, smoothness=0, mean=None, at_least=None, at_most=None, coefficients=())
+    
+    start + factor * Phi, where Phi is a sum of uniform B-splines on a box that brings the function near to what is wanted: the sum of the weighted terms given is as small as can be.
+    
+    start: what the function is where factor is 0
+    factor: what multiplies the splines: u^(m + 1) keeps the start's value and m derivatives where the distance u is 0; 1 where it is not given
+    lower: the box's lowest corner (scene units)
+    upper: the box's highest corner (scene units)
+    splines: how many splines along x, y and z; two for a function of x and y, one for equal numbers along all three; positive
+    degree: degree of the splines, 1 to 5
+    solid: only where it is not negative do the terms count; else in all the box
+    points: Gauss points for each span and axis, 1 to 16
+    values: term: the square of the function minus this
+    values_weight: weight of that term; not negative
+    slope: term: the square of (gradient . gradient of along) minus this
+    along: whose gradient is the direction of slope; most often a distance
+    slope_weight: weight of that term; not negative
+    smoothness: weight of the term: the gradient's squared length. Alone it makes the function harmonic; not negative
+    mean: the function's mean over the solid is this
+    at_least: the function is nowhere less
+    at_most: the function is nowhere more
+    coefficients: the solution, as `sardf solve` writes it; remove it after any change of the other parameters
+    """
 def formula(text: str, **kwargs) -> Field:
     """
     formula(text, **names)
     
     A field from a formula over x, y, z, pi and the given fields or numbers, e.g. formula("sin(k*x) + part", k=2, part=box).
+    """
+def gradient_length(field: Field | float | str) -> Field:
+    """
+    gradient_length(field)
+    
+    How steep a field is: the length of its gradient.
+    
+    field: the field
     """
 def half_plane(point: typing.Sequence[float] = ..., normal: typing.Sequence[float] = ...) -> Field:
     """
@@ -421,6 +524,19 @@ def half_space(point: typing.Sequence[float] = ..., normal: str | typing.Sequenc
     
     point: a point of the plane (scene units)
     normal: direction that points into the solid
+    """
+def helix(center: typing.Sequence[float] = ..., axis: str | typing.Sequence[float] = ..., radius: float = ..., pitch: float = ..., start: float = ..., end: float = ...) -> Field:
+    """
+    helix(center=(0, 0, 0), axis=(0, 0, 1), radius, pitch, start=None, end=None)
+    
+    The distance to a helical line, which passes the height of its center at angle 0. For the axis z, angle 0 is +x.
+    
+    center: a point of its axis (scene units)
+    axis: direction of its axis
+    radius: radius of its turns (scene units); positive
+    pitch: rise along the axis in one turn, at least a millionth of the radius; negative: left-handed (scene units)
+    start: the angle where it starts; none: endless (degrees)
+    end: the angle where it ends, larger than start; none: endless (degrees)
     """
 def implicit_polygon(vertices: typing.Sequence[typing.Sequence[float]] | numpy.ndarray, blend: Blend = ...) -> Field:
     """
@@ -453,6 +569,24 @@ def loft(sections: typing.Sequence[typing.Any], interpolation: str = ...) -> Fie
     sections: plane fields and their heights, from the lowest to the highest (scene units)
     interpolation: 'smooth': the sides have no crease at a section; 'linear': straight in between
     """
+def mesh_solid(path: str | os.PathLike[str], sign: str = ...) -> Field:
+    """
+    mesh_solid(path, sign='auto')
+    
+    The solid inside a triangle mesh from a file (.ply, .obj or .stl), with its exact distance where the mesh is sound. A closed mesh may be oriented either way round. With holes the field jumps across them, and its slope is infinite near there.
+    
+    path: the file, relative to the scene file's folder
+    sign: how the inside is found: 'normals' of a closed mesh without faults, 'winding' number of any mesh, or 'auto': the first where it is possible
+    """
+def mesh_surface(path: str | os.PathLike[str], faces: typing.Sequence[float] | numpy.ndarray = ...) -> Field:
+    """
+    mesh_surface(path, faces=())
+    
+    The distance to the triangles of a mesh from a file (.ply, .obj or .stl), or to some of its faces.
+    
+    path: the file, relative to the scene file's folder
+    faces: the faces to take, counted from 0 as in the file; none: all
+    """
 def mirror(field: Field | float | str, point: typing.Sequence[float] = ..., normal: str | typing.Sequence[float] = ...) -> Field:
     """
     mirror(field, point=(0, 0, 0), normal=(1, 0, 0))
@@ -463,6 +597,24 @@ def mirror(field: Field | float | str, point: typing.Sequence[float] = ..., norm
     point: a point of the plane (scene units)
     normal: direction perpendicular to the plane
     """
+def normal_derivative(field: Field | float | str, distance: Field | float | str) -> Field:
+    """
+    normal_derivative(field, distance)
+    
+    The product of two fields' gradients: for a distance the derivative of the field away from its feature.
+    
+    field: the field
+    distance: the distance to the feature
+    """
+def normalized(field: Field | float | str, order: float = ...) -> Field:
+    """
+    normalized(field, order=1)
+    
+    A field with the same zeros, normalised: near them it is the distance, with an error of order distance^(order+1). The first order is f / sqrt(f^2 + |grad f|^2).
+    
+    field: the field f, smooth at its zeros
+    order: how well, from 1 to 12; a whole number from 1
+    """
 def offset(field: Field | float | str, distance: float) -> Field:
     """
     offset(field, distance)
@@ -471,6 +623,15 @@ def offset(field: Field | float | str, distance: float) -> Field:
     
     field: the solid
     distance: how far the surface moves outwards; negative: inwards (scene units)
+    """
+def plane(point: typing.Sequence[float] = ..., normal: str | typing.Sequence[float] = ...) -> Field:
+    """
+    plane(point=(0, 0, 0), normal=(0, 0, 1))
+    
+    The distance to an infinite plane, from either side.
+    
+    point: a point of the plane (scene units)
+    normal: direction perpendicular to it
     """
 def point(at: typing.Sequence[float]) -> Field:
     """
@@ -514,6 +675,15 @@ def quadric(matrix: typing.Sequence[typing.Sequence[float]] | numpy.ndarray, vec
     matrix: M, three rows of three numbers
     vector: v
     constant: c; with the unit ball's M, -1 on the diagonal, its radius squared
+    """
+def r_equivalence(*of: Field, order: float = ...) -> Field:
+    """
+    r_equivalence(*of, order=1)
+    
+    The union of features, smooth away from them: (sum of u_i^-order)^(-1/order), normalised to that order where the distances u_i are. It is never larger than the smallest.
+    
+    of: the distances
+    order: the higher, the nearer to the smallest of them; positive
     """
 def repeat(field: Field | float | str, spacing: typing.Sequence[float], counts: typing.Sequence[float] = ...) -> Field:
     """
@@ -589,6 +759,14 @@ def shell(field: Field | float | str, thickness: float, side: str = ...) -> Fiel
     thickness: thickness of the wall (scene units); positive
     side: where the wall lies: 'inside', 'outside' or 'centred' on the surface
     """
+def skeleton(*of: Field) -> Field:
+    """
+    skeleton(*of)
+    
+    The distance to the nearest of several features.
+    
+    of: the features
+    """
 def sphere(center: typing.Sequence[float] = ..., radius: float = ...) -> Field:
     """
     sphere(center=(0, 0, 0), radius)
@@ -597,6 +775,29 @@ def sphere(center: typing.Sequence[float] = ..., radius: float = ...) -> Field:
     
     center: its middle (scene units)
     radius: its radius (scene units); positive
+    """
+def spline_field(lower: typing.Sequence[float], upper: typing.Sequence[float], counts: typing.Sequence[float] | numpy.ndarray, coefficients: typing.Sequence[float] | numpy.ndarray, degree: float = ...) -> Field:
+    """
+    spline_field(lower, upper, counts, coefficients, degree=3)
+    
+    A smooth function on a box: a sum of uniform B-splines, each times a coefficient. Outside the box it has the value of the box's nearest point.
+    
+    lower: the box's lowest corner (scene units)
+    upper: the box's highest corner (scene units)
+    counts: how many splines along x, y and z; two for a function of x and y; on count - degree equal spans; positive
+    coefficients: one for each spline; the last coordinate's number changes fastest
+    degree: degree of the polynomials, 1 to 5
+    """
+def taylor(formula: str, distance: Field | float | str, terms: float, first_term: float = ...) -> Field:
+    """
+    taylor(formula, distance, terms, first_term=1)
+    
+    The first terms of the Taylor series, at u = 0, of a function of the distance u; or some of them, counted from 1.
+    
+    formula: the function of u, such as 'exp(-1.5*u)'
+    distance: the distance u
+    terms: how many terms, at most 32; a whole number from 1
+    first_term: the first of them; term k is that of u^(k-1); a whole number from 1
     """
 def torus(center: typing.Sequence[float] = ..., axis: str | typing.Sequence[float] = ..., major_radius: float = ..., minor_radius: float = ...) -> Field:
     """
@@ -618,6 +819,24 @@ def translate(field: Field | float | str, by: typing.Sequence[float]) -> Field:
     field: what is moved
     by: the displacement (scene units)
     """
+def trimmed(field: Field | float | str, by: Field | float | str) -> Field:
+    """
+    trimmed(field, by)
+    
+    The part of where a field is 0 that lies in a solid, as a feature normalised to the first order if both fields are: sqrt(f^2 + (sqrt(t^2 + f^4) - t)^2 / 4) for a solid t.
+    
+    field: the field f
+    by: the solid t that it is kept in
+    """
+def trimmed_segment(a: typing.Sequence[float], b: typing.Sequence[float]) -> Field:
+    """
+    trimmed_segment(a, b)
+    
+    A straight segment as a line that is trimmed by the ball around it: smooth away from it, normalised to the first order.
+    
+    a: one end (scene units)
+    b: the other end (scene units)
+    """
 def twist(field: Field | float | str, rate: float, axis: str | typing.Sequence[float] = ..., center: typing.Sequence[float] = ...) -> Field:
     """
     twist(field, rate, axis=(0, 0, 1), center=(0, 0, 0))
@@ -637,6 +856,15 @@ def union(*of: Field, blend: Blend = ...) -> Field:
     
     of: the solids
     blend: how they are joined
+    """
+def value_of(rule: typing.Any, scale: float = ...) -> Field:
+    """
+    value_of(rule, scale=1)
+    
+    The number that a rule gives, as a field: values on features, interpolated between them. It is no distance.
+    
+    rule: a rule with values, as an attribute has it
+    scale: the size of what is modelled: a point counts as on a feature within 1e-12 of it (scene units); positive
     """
 def with_blend(field: Field | float | str, blend: Blend = ...) -> Field:
     """

@@ -1,7 +1,8 @@
 """A turbine blade as triangles: cambered sections that taper and twist along the span.
 
 Run it as `python examples/turbine_blade.py FOLDER`; the folder (default: the current one) receives
-turbine_blade.ply, in millimetres. scenes/turbine_blade.json grades its materials by the distance to it.
+turbine_blade.ply, in millimetres. scenes/turbine_blade.json grades its materials by the distance to
+it.
 """
 
 import sys
@@ -13,7 +14,7 @@ SPAN, AROUND, SECTIONS = 40.0, 72, 33
 
 
 def section(share):
-    """The closed outline of the section at that share of the span: (AROUND, 2), counter-clockwise."""
+    """The outline at that share of the span: (AROUND, 2), counter-clockwise."""
     chord, thickness, camber = 24 - 8 * share, 0.17 - 0.04 * share, 0.10 - 0.04 * share
     twist = np.radians(50 - 38 * share)
     angle = np.linspace(0, 2 * np.pi, AROUND, endpoint=False)

@@ -167,7 +167,7 @@ void bind_scenes(py::module_& m) {
           py::arg("fields") = std::map<std::string, Field>{},
           "A scene from a scene file's text; `fields` are names it may use besides its own.")
       .def(
-          "to_json", [](const Scene& s) { return scene_text(s.description()); },
+          "to_json", [](const Scene& s) { return scene_text(s.description(), {}, "."); },
           "The scene as a scene file's text.")
       .def(
           "save", [](const Scene& s, const std::string& p) { write_scene(p, s.description()); },

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,8 +31,9 @@ Fractions parse_value_rule(const std::string& text, const std::map<std::string, 
 using ReplacedArguments = std::map<const Construction*, std::vector<Value>>;
 
 /// The scene as text that parse_scene reads back to equal expressions. Shared fields are named;
-/// files that it names are named as they were given.
-std::string scene_text(const SceneDescription& scene, const ReplacedArguments& replaced = {});
+/// relative names of files become relative to `folder`, or stay as they were given without one.
+std::string scene_text(const SceneDescription& scene, const ReplacedArguments& replaced = {},
+                       const std::optional<std::string>& folder = {});
 /// Writes a temporary file and renames it; "-" writes standard output. Relative names of files
 /// become relative to the folder of `path` (to the current one for "-"), so that they are found.
 void write_scene(const std::string& path, const SceneDescription& scene,

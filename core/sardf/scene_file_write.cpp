@@ -91,7 +91,7 @@ class SceneWriter {
  public:
   /// `folder`: that the names of files become relative to; none: they stay as they were given.
   SceneWriter(const SceneDescription& scene, const ReplacedArguments& replaced,
-              std::optional<std::string> folder = {})
+              std::optional<std::string> folder)
       : scene_(scene), replaced_(replaced), names_(scene), folder_(std::move(folder)) {}
 
   JsonValue document() {
@@ -389,15 +389,16 @@ class SceneWriter {
 
 }  // namespace
 
-std::string scene_text(const SceneDescription& scene, const ReplacedArguments& replaced) {
-  return pretty_json(SceneWriter(scene, replaced).document());
+std::string scene_text(const SceneDescription& scene, const ReplacedArguments& replaced,
+                       const std::optional<std::string>& folder) {
+  return pretty_json(SceneWriter(scene, replaced, folder).document());
 }
 
 void write_scene(const std::string& path, const SceneDescription& scene,
                  const ReplacedArguments& replaced) {
   const std::string folder =
       path == "-" ? "." : (std::filesystem::path(".") / path).parent_path().string();
-  const std::string text = pretty_json(SceneWriter(scene, replaced, folder).document());
+  const std::string text = scene_text(scene, replaced, folder);
   if (path == "-") {
     std::cout << text;
     return;

@@ -97,4 +97,30 @@ CHOSEN = (
         "a profile of 6 × 2.8, 1.6 wide; prism 1 × 0.6 around (0.5, 2.5), block 3 × 2 around "
         "(4.5, 1) of the profile",
     ),
+    (
+        "1.3 to 4",
+        "the S-shaped curve",
+        "a cubic B-spline with the control points (0.7, 2.6), (0.35, 3.05), (-0.75, 3), "
+        "(-0.85, 2.05), (0, 1.5), (0.85, 0.95), (0.75, 0), (-0.35, -0.05), (-0.7, 0.4)",
+    ),
+    ("1.3", "the B-spline surface", "z = h(x, y), bicubic, 6 × 6 splines on a square of 4 × 4"),
+    (
+        "1.3",
+        "the first-order field of Figure 2(b)",
+        "24 trimmed chords, joined by R-equivalence of order 1",
+    ),
+    (
+        "2.2",
+        "the Y",
+        "a stem from (0, -0.02) to (0, 0), branches from there to (-0.012, 0.02) and (0.012, 0.02)",
+    ),
+    ("2.3", "the domain of the splines", "-2 ≤ x ≤ 2, -0.5 ≤ y ≤ 3.5"),
+    ("3 and 4.2", "the ring", "center (0, 1.5), radius 1.9"),
+    ("3.2", "the distances of Figures 11 to 15", "exact, but for u₁ of the cube, of order 1"),
+    (
+        "3.3",
+        "every size of the cube",
+        "edges 2; hole of radius 0.25; spiral of radius 0.6, pitch 1 and two turns, its canal of "
+        "radius 0.1",
+    ),
 )

@@ -20,11 +20,12 @@ class GoldenSplineFeatures : public golden::InEachFolder {
     }
     return make_field("bspline_curve", {points, 3.0});
   }
-  static void expect_column(const Table& table, const Field& f, const char* column) {
+  static void expect_column(const Table& table, const Field& f, const char* column,
+                            double tolerance) {
     const Evaluator evaluator(f.expression());
     const size_t x = table.column("x"), y = table.column("y"), expected = table.column(column);
     for (const auto& row : table.rows) {
-      EXPECT_NEAR(evaluator.value({row[x], row[y], 0}), row[expected], table.tolerance()) << column;
+      EXPECT_NEAR(evaluator.value({row[x], row[y], 0}), row[expected], tolerance) << column;
     }
   }
 };
@@ -36,9 +37,11 @@ TEST_P(GoldenSplineFeatures, TaylorTerms) {
   const Field u = s_curve(table);
   char formula[60];
   std::snprintf(formula, sizeof formula, "exp((%.17g)*u)", double(table.parameter("a")));
-  expect_column(table, u, "u");
-  expect_column(table, make_field("taylor", {std::string(formula), u, 2.0, 1.0}), "sum2");
-  expect_column(table, make_field("taylor", {std::string(formula), u, 4.0, 1.0}), "sum4");
+  expect_column(table, u, "u", table.tolerance());
+  expect_column(table, make_field("taylor", {std::string(formula), u, 2.0, 1.0}), "sum2",
+                table.tolerance());
+  expect_column(table, make_field("taylor", {std::string(formula), u, 4.0, 1.0}), "sum4",
+                table.tolerance());
 }
 
 // Fig. 7: F0 = y e^(a u), conditioned, and then with a prescribed normal
@@ -50,9 +53,11 @@ TEST_P(GoldenSplineFeatures, Conditioning) {
       parse_formula("y*exp(a*u)", {{"u", u}}, {{"a", double(table.parameter("a"))}});
   const Field conditioned = make_field("conditioned", {before, u});
   const std::vector<Field> coefficients{conditioned, Field::number(table.parameter("F1"))};
-  expect_column(table, before, "F0");
-  expect_column(table, conditioned, "Fstar");
-  expect_column(table, make_field("canonical_form", {u, coefficients, Value()}), "F");
+  expect_column(table, before, "F0", table.tolerance());
+  // The reference's nearest points are off by up to 5e-9, as a root of (C - p)·C' found by
+  // bisection shows; its distances are not, since they are least there.
+  expect_column(table, conditioned, "Fstar", 1e-8);
+  expect_column(table, make_field("canonical_form", {u, coefficients, Value()}), "F", 1e-8);
 }
 
 }  // namespace

@@ -217,7 +217,7 @@ TEST(SceneFile, OfEveryExampleIsReadAndWritten) {
     if (entry.path().extension() != ".json") continue;
     SCOPED_TRACE(entry.path().string());
     const SceneDescription scene = read_scene(entry.path());
-    expect_same(scene, parse(scene_text(scene)));
+    expect_same(scene, parse_scene(scene_text(scene), entry.path()));
     ++count;
   }
   EXPECT_GT(count, 0u);

@@ -8,7 +8,10 @@ from pathlib import Path
 from typing import Any
 
 CHANNELS = ("base_color", "roughness", "metallic", "emission", "fractions")
-GRAIN = "grain_direction"  # the attribute that directs metal's reflections unless one is named
+GRAIN = "grain_direction"
+DIRECTION = (
+    "a vector of 3 components"  # the attribute that directs metal's reflections unless one is named
+)
 MESH_SHARE = 0.4  # of the time, for the progress bar: meshing took 0.2 to 0.6 of it on our scenes
 
 
@@ -74,10 +77,23 @@ def make_part(sardf, request, progress=None):
     )
     name = scene.title or Path(request.path).stem
     vertices = mesh.vertices
-    attributes = {name: evaluate(vertices) for name, evaluate in scene.attributes.items()}
+    attributes = attributes_at(scene, vertices)
     return Part(
         name, str(request.path), scene, mesh, maps, scene.fractions(vertices), attributes, tangent
     )
+
+
+def attributes_at(scene, points):
+    """{name: (points,) or (points, components)}; components that have names stand alone, as
+    stress_xx does."""
+    attributes = {}
+    for name, evaluate in scene.attributes.items():
+        values = evaluate(points)
+        if isinstance(values, dict):
+            attributes |= {f"{name}_{component}": of for component, of in values.items()}
+        else:
+            attributes[name] = values
+    return attributes
 
 
 def tangent_of(sardf, scene, name):
@@ -88,25 +104,26 @@ def tangent_of(sardf, scene, name):
     """
     known = scene.attributes
     if not name:
-        return GRAIN if GRAIN in known and components(known[GRAIN]) == 3 else ""
+        return GRAIN if GRAIN in known and kind_of(known[GRAIN]) == DIRECTION else ""
     if name not in known:
         accepted = f"accepted are {', '.join(known)}" if known else "the scene has none"
         near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
         hint = f"; did you mean '{near[0]}'?" if near else ""
         raise sardf.Error(f"there is no attribute '{name}'; {accepted}{hint}")
-    count = components(known[name])
-    if count != 3:
-        found = "a number" if count == 1 else f"a vector of {count} components"
+    found = kind_of(known[name])
+    if found != DIRECTION:
         raise sardf.Error(
             f"the attribute '{name}' is {found}; metal is brushed along a vector of 3 components"
         )
     return name
 
 
-def components(evaluate):
-    """How many numbers an attribute gives at a point."""
+def kind_of(evaluate):
+    """What an attribute gives at a point, in words: DIRECTION is what metal is brushed along."""
     values = evaluate([(0.0, 0.0, 0.0)])
-    return 1 if values.ndim == 1 else values.shape[1]
+    if isinstance(values, dict):
+        return f"made of the components {', '.join(values)}"
+    return "a number" if values.ndim == 1 else f"a vector of {values.shape[1]} components"
 
 
 class Job:

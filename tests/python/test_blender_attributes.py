@@ -25,6 +25,7 @@ PLATE = {
         "flat": ["=x*y", "=y - 1"],
         "heat": {"value": "=20 + x", "unit": "°C"},
         "four": ["=x", "=y", "=z", 1],
+        "stress": {"value": {"components": {"xx": "=x", "xy": "=y"}}},
         "steel": "=z",
         "pole": "=0*x/0",
         "position": ["=z", 0, 0],
@@ -67,6 +68,8 @@ def test_attributes_stand_at_the_points_under_their_names(plate):
         "flat": [x * y, y - 1, nothing],
         "heat": [20 + x],
         "four_1": [x],
+        "stress_xx": [x],
+        "stress_xy": [y],
         "four_4": [nothing + 1],
         "steel": [nothing + 1],  # the material's fraction; the attribute comes after it
         "normal.001" if version == "3.4.1" else "normal": [nothing],
@@ -80,7 +83,7 @@ def test_attributes_stand_at_the_points_under_their_names(plate):
         assert kinds[name] == [kind, "POINT"], name
         values = arrays[f"attribute {name}"].reshape(len(x), -1)
         np.testing.assert_allclose(values, np.transpose(columns), rtol=0, atol=1e-5, err_msg=name)
-    assert not {"four", "four_5", "pole.001"} & set(kinds)
+    assert not {"four", "four_5", "pole.001", "stress"} & set(kinds)
 
 
 def from_picture(picture):
@@ -143,6 +146,7 @@ WRONG = {
     "along_z": "there is no attribute 'along_z'; accepted are grain_direction, along_x",
     "grain_direktion": "did you mean 'grain_direction'?",
     "heat": "the attribute 'heat' is a number",
+    "stress": "the attribute 'stress' is made of the components xx, xy",
     "flat": "the attribute 'flat' is a vector of 2 components",
 }
 

@@ -20,6 +20,7 @@ ATTRIBUTES = BALL["attributes"] | {
     "pole": {"value": ["=1/(x - 1)", 1, 0]},
     "nothing": {"value": [0, 0, 0]},
     "four": {"value": [1, 2, 3, 4]},
+    "stress": {"value": {"components": {"xx": 1, "xy": "=y", "yy": "=x"}}},
 }
 WINDOW = "-2,4,-2.5,2.5"
 
@@ -211,6 +212,7 @@ WRONG_INPUT = """
 --section z=0 --arrows grian | there is no attribute 'grian'; accepted are heat, grain
 --section z=0 --arrows grian | did you mean 'grain'?
 --section z=0 --streamlines heat | the attribute 'heat' is a number
+--section z=0 --arrows stress | the attribute 'stress' is made of the components xx, xy, yy
 --section z=0 --arrows four | the attribute 'four' is a vector of 4 components
 --section z=7 --arrows grain | in this window, none of its arrows lies inside the solid
 --section z=0 --window=5,6,5,6 --streamlines grain | none of its streamlines lies inside the solid

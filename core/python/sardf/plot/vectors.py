@@ -95,10 +95,13 @@ def vector_attribute(scene, name: str):
     """The function points (N, 3) -> (N, 2 or 3) of an attribute; Error where it is none."""
     attributes = scene.attributes
     evaluate = choose("attribute", name, attributes)
-    shape = np.shape(evaluate(np.zeros((1, 3))))
+    sample = evaluate(np.zeros((1, 3)))
+    shape = np.shape(sample)
     count = shape[1] if len(shape) == 2 else 1
     if count not in (2, 3):
         found = "a number" if count == 1 else f"a vector of {count} components"
+        if isinstance(sample, dict):
+            found = f"made of the components {', '.join(sample)}"
         fail(f"the attribute '{name}' is {found}; arrows and streamlines show a vector of 2 or 3 "
              "components")  # fmt: skip
     return evaluate

@@ -8,10 +8,8 @@ from pathlib import Path
 from typing import Any
 
 CHANNELS = ("base_color", "roughness", "metallic", "emission", "fractions")
-GRAIN = "grain_direction"
-DIRECTION = (
-    "a vector of 3 components"  # the attribute that directs metal's reflections unless one is named
-)
+GRAIN = "grain_direction"  # the attribute that directs metal's reflections unless one is named
+DIRECTION = "a vector of 3 components"
 MESH_SHARE = 0.4  # of the time, for the progress bar: meshing took 0.2 to 0.6 of it on our scenes
 
 

@@ -4,21 +4,16 @@
 #include <cstdio>
 
 #include "sardf/error.hpp"
+#include "sardf/short_number.hpp"
 
 namespace sardf {
 
 namespace {
 
-std::string number_text(double a) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", a);
-  return text;
-}
-
 int checked_degree(const Direction& direction) {
   const double degree = direction.degree;
   if (!(degree >= 1 && degree <= most_degree && degree == std::floor(degree))) {
-    throw Error("degree" + direction.suffix + " is " + number_text(degree) +
+    throw Error("degree" + direction.suffix + " is " + short_number(degree, 6) +
                 "; a whole number from 1 to " + std::to_string(most_degree) + " is accepted");
   }
   return int(degree);
@@ -39,8 +34,8 @@ void check_knots(const Direction& direction, size_t count, int degree) {
   }
   for (size_t i = 1; i < knots.size(); ++i) {
     if (knots[i] < knots[i - 1]) {
-      throw Error(name + " falls from " + number_text(knots[i - 1]) + " to " +
-                  number_text(knots[i]) + " at element " + std::to_string(i) +
+      throw Error(name + " falls from " + short_number(knots[i - 1], 6) + " to " +
+                  short_number(knots[i], 6) + " at element " + std::to_string(i) +
                   "; knots that never fall are accepted");
     }
   }

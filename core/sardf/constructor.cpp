@@ -13,6 +13,7 @@
 #include "sardf/shapes_mesh.hpp"
 #include "sardf/shapes_normalize.hpp"
 #include "sardf/shapes_transform.hpp"
+#include "sardf/short_number.hpp"
 
 namespace sardf {
 
@@ -59,12 +60,6 @@ Registry& registry() {
   return all;
 }
 
-std::string number_text(double a) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", a);
-  return text;
-}
-
 // Magnitudes beyond this leave no room for squares and products of lengths.
 constexpr double absurd = 1e100;
 
@@ -76,7 +71,7 @@ void check_number(const ParameterInfo& p, double a) {
   if (!std::isfinite(a) || std::abs(a) > absurd || (p.range == Range::positive && !(a > 0)) ||
       (p.range == Range::non_negative && !(a >= 0)) ||
       (p.range == Range::count && !(a >= 1 && a == std::floor(a)))) {
-    throw Error(p.name + " is " + number_text(a) + ";" + sizes +
+    throw Error(p.name + " is " + short_number(a, 6) + ";" + sizes +
                 (std::isfinite(a) && std::abs(a) > absurd ? " of magnitude up to 1e100" : "") +
                 " is accepted");
   }

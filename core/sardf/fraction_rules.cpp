@@ -5,16 +5,11 @@
 
 #include "sardf/arithmetic.hpp"
 #include "sardf/error.hpp"
+#include "sardf/short_number.hpp"
 
 namespace sardf {
 
 namespace {
-
-std::string number_text(double a) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", a);
-  return text;
-}
 
 size_t place_of(const std::string& material, const std::vector<std::string>& materials) {
   const auto found = std::find(materials.begin(), materials.end(), material);
@@ -112,13 +107,13 @@ void ConstantFractions::check() const {
   double total = 0;
   for (const auto& [material, share] : shares) {
     if (!(share >= 0 && share <= 1 + 1e-6)) {
-      throw Error("the share of '" + material + "' is " + number_text(share) +
+      throw Error("the share of '" + material + "' is " + short_number(share, 6) +
                   "; a number from 0 to 1 is accepted");
     }
     total += share;
   }
   if (std::abs(total - 1) > 1e-6) {
-    throw Error("the shares sum to " + number_text(total) + "; they must sum to 1");
+    throw Error("the shares sum to " + short_number(total, 6) + "; they must sum to 1");
   }
 }
 
@@ -256,8 +251,8 @@ std::vector<WeightedPart> BlendBetween::parts(double diagonal) const {
 void Ramp::check() const {
   for (size_t i = 1; i < stops.size(); ++i) {
     if (stops[i].at < stops[i - 1].at) {
-      throw Error("stop " + std::to_string(i + 1) + " is at " + number_text(stops[i].at) +
-                  ", before the one at " + number_text(stops[i - 1].at) +
+      throw Error("stop " + std::to_string(i + 1) + " is at " + short_number(stops[i].at, 6) +
+                  ", before the one at " + short_number(stops[i - 1].at, 6) +
                   "; stops must be in rising order");
     }
   }
@@ -284,8 +279,8 @@ std::vector<WeightedPart> Ramp::parts(double) const {
 void Bands::check() const {
   for (const Band& band : bands) {
     if (blend_width > band.width) {
-      throw Error("blend_width is " + number_text(blend_width) +
-                  ", more than the width of a stripe, " + number_text(band.width));
+      throw Error("blend_width is " + short_number(blend_width, 6) +
+                  ", more than the width of a stripe, " + short_number(band.width, 6));
     }
   }
 }

@@ -6,6 +6,7 @@
 #include "sardf/arithmetic.hpp"
 #include "sardf/ops_domain.hpp"
 #include "sardf/ops_plane.hpp"
+#include "sardf/short_number.hpp"
 
 namespace sardf {
 
@@ -100,12 +101,6 @@ Expression ImplicitPolygon::expression() const {
 
 namespace {
 
-std::string number_text(double a) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", a);
-  return text;
-}
-
 void check_sections(const std::vector<PlaneSection>& sections) {
   for (size_t i = 0; i < sections.size(); ++i) {
     const std::string which = "section " + std::to_string(i + 1);
@@ -115,7 +110,7 @@ void check_sections(const std::vector<PlaneSection>& sections) {
     }
     if (i == 0 || sections[i - 1].z < sections[i].z) continue;
     const bool same = sections[i - 1].z == sections[i].z;
-    throw Error(which + " is at z = " + number_text(sections[i].z) +
+    throw Error(which + " is at z = " + short_number(sections[i].z, 6) +
                 (same ? ", where section " : ", below section ") + std::to_string(i) +
                 (same ? " is: the contours would cross" : ": the sides would cross") +
                 "; heights must rise");

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "sardf/error.hpp"
+#include "sardf/short_number.hpp"
 
 namespace sardf {
 
@@ -11,23 +12,17 @@ namespace {
 
 constexpr double most_bytes = 0x1p31;
 
-std::string number_text(double a) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", a);
-  return text;
-}
-
 int whole_degree(double degree) {
   if (degree >= 1 && degree <= most_spline_degree && degree == std::floor(degree)) {
     return int(degree);
   }
-  throw Error("the degree is " + number_text(degree) + "; a whole number from 1 to " +
+  throw Error("the degree is " + short_number(degree, 6) + "; a whole number from 1 to " +
               std::to_string(most_spline_degree) + " is accepted");
 }
 
 void check_count(double count, int degree) {
   if (count > degree && count == std::floor(count)) return;
-  throw Error("a number of splines is " + number_text(count) + "; whole numbers from " +
+  throw Error("a number of splines is " + short_number(count, 6) + "; whole numbers from " +
               std::to_string(degree + 1) + " (the degree and one) are accepted");
 }
 
@@ -36,7 +31,7 @@ void check_size(const std::vector<double>& counts) {
   std::string text;
   for (const double count : counts) {
     size *= count;
-    text += (text.empty() ? "" : " x ") + number_text(count);
+    text += (text.empty() ? "" : " x ") + short_number(count, 6);
   }
   if (8 * size <= most_bytes) return;
   throw Error(text + " splines need " + memory_text(8 * size) +
@@ -78,7 +73,7 @@ SplineGrid spline_grid(const Vec3& lower, const Vec3& upper, const std::vector<d
   for (size_t axis = 0; axis < counts.size(); ++axis) {
     if (!(lower[axis] < upper[axis]) || !std::isfinite(upper[axis] - lower[axis])) {
       throw Error("along " + std::string(1, char('x' + axis)) + " lower is " +
-                  number_text(lower[axis]) + " and upper " + number_text(upper[axis]) +
+                  short_number(lower[axis], 6) + " and upper " + short_number(upper[axis], 6) +
                   "; finite numbers, lower below upper, are accepted");
     }
     grid.lower[axis] = lower[axis];
@@ -87,7 +82,7 @@ SplineGrid spline_grid(const Vec3& lower, const Vec3& upper, const std::vector<d
     grid.degrees[axis] = whole;
     if (!std::isfinite(grid.per_length(int(axis)))) {
       throw Error("along " + std::string(1, char('x' + axis)) + " upper - lower is only " +
-                  number_text(upper[axis] - lower[axis]));
+                  short_number(upper[axis] - lower[axis], 6));
     }
   }
   return grid;

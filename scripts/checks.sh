@@ -7,7 +7,7 @@ setup_failed() {
 }
 
 begin_checks() {
-  rm -f "$logs"/googletest.xml "$logs"/pytest.xml
+  rm -f "$logs"/googletest_*.xml "$logs"/pytest.xml
   : >"$checks"
 }
 
@@ -24,6 +24,19 @@ suite() {
   step "$@" || printf 'ended badly\t%s\n' "$1" >>"$checks"
 }
 
+# both_halves PROGRAM ARGUMENT...: a googletest program as two processes, one for each core, with
+# half of the tests each; reports, if asked for by REPORTS=1, are build/logs/googletest_{0,1}.xml.
+both_halves() {
+  local half status=0 running=()
+  for half in 0 1; do
+    GTEST_TOTAL_SHARDS=2 GTEST_SHARD_INDEX=$half \
+      GTEST_OUTPUT=${REPORTS:+xml:$logs/googletest_$half.xml} "$@" &
+    running+=($!)
+  done
+  for half in "${running[@]}"; do wait "$half" || status=1; done
+  return $status
+}
+
 build_preset() {
   local preset=$1
   shift
@@ -37,6 +50,7 @@ check_cpp_format() {
 
 # Prints failures, skips with their reasons, and the closing line; exits with 1 if anything failed.
 end_checks() {
-  .venv/bin/python scripts/count_tests.py "$checks" "$logs/googletest.xml" "$logs/pytest.xml"
+  .venv/bin/python scripts/count_tests.py "$checks" \
+    "$logs"/googletest_{0,1}.xml "$logs/pytest.xml"
   exit
 }

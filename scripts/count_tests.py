@@ -1,5 +1,6 @@
 """Counts checks and JUnit reports together: failures, skips with reasons, and one closing line."""
 
+import re
 import sys
 import xml.etree.ElementTree as ElementTree
 from collections import Counter
@@ -27,8 +28,8 @@ def report_cases(path: Path) -> list[tuple[str, str, str]]:
 def all_cases(checks: Path, reports: list[Path]) -> list[tuple[str, str, str]]:
     """The cases of every report and the lines "outcome<TAB>name" of `checks`.
 
-    A suite that ended badly is a failure of its own unless its report names one; so is a report
-    that is missing or empty.
+    A suite that ended badly is a failure of its own unless its reports (suite.xml, or suite_0.xml,
+    suite_1.xml, ... of its parts) name one; so is a report that is missing or empty.
     """
     cases = []
     ended_badly = set()
@@ -38,12 +39,15 @@ def all_cases(checks: Path, reports: list[Path]) -> list[tuple[str, str, str]]:
             ended_badly.add(name)
         else:
             cases.append((outcome, name, ""))
+    suites = {}
     for report in reports:
         found = report_cases(report) if report.exists() else []
-        if not found:
-            cases.append(("failed", report.stem, "no test ran"))
-        elif report.stem in ended_badly and not any(case[0] == "failed" for case in found):
-            cases.append(("failed", report.stem, "it ended badly although no test failed"))
+        suites.setdefault(re.sub(r"_\d+$", "", report.stem), []).extend(
+            found or [("failed", report.stem, "no test ran")]
+        )
+    for suite, found in suites.items():
+        if suite in ended_badly and not any(case[0] == "failed" for case in found):
+            cases.append(("failed", suite, "it ended badly although no test failed"))
         cases += found
     return cases
 

@@ -101,3 +101,18 @@ def test_a_suite_that_died_is_a_failure(tmp_path):
     (tmp_path / "googletest.xml").unlink()
     status, lines = count(tmp_path, "ended badly\tgoogletest\n", "", good)
     assert (status, lines[-1]) == (1, "3 passed, 1 failed, 0 skipped")
+
+
+def test_a_suite_in_two_halves_is_counted_once(tmp_path):
+    names = [tmp_path / name for name in ("checks.tsv", "googletest_0.xml", "googletest_1.xml")]
+    names[0].write_text("ended badly\tgoogletest\n")
+    names[1].write_text(GOOGLETEST)
+    names[2].write_text(GOOGLETEST)
+    command = [sys.executable, ROOT / "scripts/count_tests.py", *names]
+    lines = subprocess.run(command, capture_output=True, text=True).stdout.splitlines()
+    assert "failed: googletest: it ended badly although no test failed" in lines
+    assert lines[-1] == "2 passed, 1 failed, 4 skipped"
+    names[2].unlink()
+    lines = subprocess.run(command, capture_output=True, text=True).stdout.splitlines()
+    assert "failed: googletest_1: no test ran" in lines
+    assert lines[-1] == "1 passed, 1 failed, 2 skipped"

@@ -24,7 +24,7 @@ struct FitProblem {
   Expression start, factor, solid, values, slope, along;
   double values_weight = 1, slope_weight = 1, smoothness = 0;
   int points = 4;              // Gauss points for each cell and axis, 1 to 16
-  std::optional<double> mean;  // of F over the solid
+  std::optional<double> mean;  // of F, cut at its bounds, over the solid by the quadrature
   std::optional<double> at_least, at_most;
 
   friend bool operator==(const FitProblem&, const FitProblem&) = default;
@@ -43,6 +43,7 @@ struct FitReport {
   double finer_energy = 1;
   double volume = 0;        // of the solid (an area in two dimensions)
   double volume_error = 0;  // what the last halving of cells at its boundary changed
+  double mean = 0;          // of F, cut at its bounds, over the solid by the quadrature
   /// The most that F is cut by at_least and at_most at points between those of the quadrature.
   double cut = 0;
   double memory = 0;  // bytes, estimated before the work
@@ -56,9 +57,10 @@ struct FitResult {
 
 /// Solves. Throws Error: no term at all, a field that depends on z in two dimensions, too much
 /// memory, an empty solid, values that are not finite, contradictions between mean, bounds and
-/// start, a quadrature too coarse, equations that do not determine the function. Coefficients of
-/// functions that no point of the quadrature sees are 0. The result does not depend on the number
-/// of threads.
+/// start, bounds that cut off more than 5 % of the function's range between the points of the
+/// quadrature, a quadrature too coarse, equations that do not determine the function. Coefficients
+/// of functions that no point of the quadrature sees are 0. The result does not depend on the
+/// number of threads.
 FitResult fit(const FitProblem& problem, const Progress& progress = {});
 /// With another quadrature than that of the solid.
 FitResult fit(const FitProblem& problem, const Quadrature& quadrature,

@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "sardf/fit_quadrature.hpp"
@@ -70,6 +71,11 @@ FitResult fit(const FitProblem& problem, const Quadrature& quadrature,
 /// once.
 std::shared_ptr<const FitResult> recent_fit(const FitProblem& problem,
                                             const Progress& progress = {});
+
+/// 16 hexadecimal digits that tell problems apart: of the expressions, the grid, the weights and
+/// all other numbers. The same for equal problems in every process and on every machine; numbers
+/// count to 12 digits. Of what an expression is made of by data (meshes, curves), every bit counts.
+std::string fingerprint_of(const FitProblem& problem);
 
 /// start + factor * Phi, cut at the bounds that the problem has.
 Expression fitted_expression(const FitProblem& problem, std::vector<double> coefficients);

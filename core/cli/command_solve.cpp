@@ -5,6 +5,7 @@
 #include "cli/commands.hpp"
 #include "sardf/scene_file.hpp"
 #include "sardf/scene_solution.hpp"
+#include "sardf/shapes_fit.hpp"
 
 namespace sardf {
 
@@ -57,6 +58,8 @@ void solve_scene(const Options& options) {
   SceneDescription scene;
   {
     const ProgressScope scope(terminal_progress("solving"));
+    // Those of an older problem are no error here.
+    const IgnoredCoefficients ignored;
     scene = read_scene(options.scene);
   }
   const std::vector<SolvedField> solved = solve_fields(scene, terminal_progress("solving"));

@@ -1,6 +1,7 @@
 // One Python function for each constructor and one class-like function for each blend, by loops
 // over the registries.
 #include "convert.hpp"
+#include "python_progress.hpp"
 #include "sardf/error.hpp"
 #include "sardf/formula.hpp"
 
@@ -23,12 +24,27 @@ std::string camel_case(const std::string& name) {
   return out;
 }
 
+Field make_long(const Constructor& constructor, const py::args& args, const py::kwargs& kwargs) {
+  py::dict others(kwargs);
+  py::object callable = py::none();
+  if (kwargs.contains("progress")) callable = others.attr("pop")("progress");
+  std::vector<Value> arguments =
+      arguments_from(constructor.name, constructor.parameters, constructor.variadic(), args,
+                     py::reinterpret_borrow<py::kwargs>(others));
+  return PythonProgress(std::move(callable)).run([&](const Progress& progress) {
+    Field made = make_field(constructor, std::move(arguments));
+    if (!progress(1)) throw Cancelled();
+    return made;
+  });
+}
+
 void bind_constructor(py::module_& m, const Constructor& constructor) {
-  const std::string doc =
-      docstring(constructor.name, constructor.doc, constructor.parameters, constructor.variadic());
+  const std::string doc = docstring(constructor.name, constructor.doc, constructor.parameters,
+                                    constructor.variadic(), constructor.takes_progress);
   m.attr(constructor.name.c_str()) = py::cpp_function(
       [&constructor](const py::args& args, const py::kwargs& kwargs) {
         try {
+          if (constructor.takes_progress) return make_long(constructor, args, kwargs);
           return make_field(constructor, arguments_from(constructor.name, constructor.parameters,
                                                         constructor.variadic(), args, kwargs));
         } catch (const Error& error) {
@@ -40,11 +56,13 @@ void bind_constructor(py::module_& m, const Constructor& constructor) {
 }
 
 // For the stub: the position of *fields or -1, and (name, type, required) of each parameter.
-py::tuple signature_data(const std::vector<ParameterInfo>& parameters, int variadic) {
+py::tuple signature_data(const std::vector<ParameterInfo>& parameters, int variadic,
+                         bool takes_progress) {
   py::list rows;
   for (const ParameterInfo& p : parameters) {
     rows.append(py::make_tuple(p.name, type_name(p.type), p.required));
   }
+  if (takes_progress) rows.append(py::make_tuple("progress", "a progress", false));
   return py::make_tuple(variadic, rows);
 }
 
@@ -64,7 +82,7 @@ void bind_constructors(py::module_& m) {
     bind_constructor(m, constructor);
     constructor_dict[constructor.name.c_str()] = constructor.group;
     signatures[constructor.name.c_str()] =
-        signature_data(constructor.parameters, constructor.variadic());
+        signature_data(constructor.parameters, constructor.variadic(), constructor.takes_progress);
   }
   for (const BlendType& type : blend_types()) {
     const std::string name = camel_case(type.name);
@@ -76,7 +94,7 @@ void bind_constructors(py::module_& m) {
         },
         py::name(name.c_str()), py::doc(doc.c_str()), py::scope(m));
     blend_dict[type.name.c_str()] = name;
-    signatures[name.c_str()] = signature_data(type.parameters, -1);
+    signatures[name.c_str()] = signature_data(type.parameters, -1, false);
   }
   // What the package exports and the stub generator loops over.
   m.attr("_constructors") = constructor_dict;

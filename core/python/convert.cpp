@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "python_progress.hpp"
 #include "sardf/error.hpp"
 #include "sardf/formula.hpp"
 #include "sardf/fractions.hpp"
@@ -80,7 +81,9 @@ PointGrid point_grid_from(const ParameterInfo& p, const py::handle& value) {
 RulePointer rule_from(const py::handle& value) {
   const auto named = py::module_::import("sardf._scene").attr("with_names")(value);
   const auto pair = py::cast<std::pair<std::string, std::map<std::string, Field>>>(named);
-  return parse_value_rule(pair.first, pair.second).pointer();
+  return PythonProgress(py::none()).run([&](const Progress&) {
+    return parse_value_rule(pair.first, pair.second).pointer();
+  });
 }
 
 Vec3 axis_from(const ParameterInfo& p, const py::handle& value) {
@@ -269,7 +272,7 @@ std::vector<Value> arguments_from(const std::string& takes,
 }
 
 std::string signature(const std::string& name, const std::vector<ParameterInfo>& parameters,
-                      int variadic) {
+                      int variadic, bool takes_progress) {
   std::string text = name + "(";
   for (size_t i = 0; i < parameters.size(); ++i) {
     if (i) text += ", ";
@@ -278,12 +281,14 @@ std::string signature(const std::string& name, const std::vector<ParameterInfo>&
     if (!parameters[i].required)
       text += "=" + std::visit(DefaultText{}, parameters[i].default_value);
   }
+  if (takes_progress) text += ", progress=None";
   return text + ")";
 }
 
 std::string docstring(const std::string& name, const std::string& doc,
-                      const std::vector<ParameterInfo>& parameters, int variadic) {
-  std::string text = signature(name, parameters, variadic) + "\n\n" + doc + "\n";
+                      const std::vector<ParameterInfo>& parameters, int variadic,
+                      bool takes_progress) {
+  std::string text = signature(name, parameters, variadic, takes_progress) + "\n\n" + doc + "\n";
   for (const ParameterInfo& p : parameters) {
     text += "\n" + p.name + ": " + p.doc;
     if (p.unit == Unit::length) text += " (scene units)";
@@ -292,22 +297,12 @@ std::string docstring(const std::string& name, const std::string& doc,
     if (p.range == Range::non_negative) text += "; not negative";
     if (p.range == Range::count) text += "; a whole number from 1";
   }
+  if (takes_progress) {
+    text +=
+        "\nprogress: called with the share done; may return False to cancel, which raises "
+        "Cancelled";
+  }
   return text;
-}
-
-PythonProgress::operator Progress() {
-  if (callable_.is_none()) return {};
-  return [this](double share) {
-    py::gil_scoped_acquire acquire;
-    if (raised_) return false;
-    try {
-      const py::object answer = callable_(share);
-      return answer.is_none() || py::cast<bool>(answer);
-    } catch (...) {
-      raised_ = std::current_exception();
-      return false;
-    }
-  };
 }
 
 }  // namespace sardf

@@ -7,7 +7,6 @@
 
 #include "sardf/constructor.hpp"
 #include "sardf/evaluate.hpp"
-#include "sardf/progress.hpp"
 
 namespace sardf {
 
@@ -34,34 +33,11 @@ std::vector<Value> arguments_from(const std::string& takes,
 
 /// "box(center=(0, 0, 0), size, ...)": a line for a docstring.
 std::string signature(const std::string& name, const std::vector<ParameterInfo>& parameters,
-                      int variadic);
+                      int variadic, bool takes_progress = false);
 /// The signature, what it makes, and a line for each parameter.
 std::string docstring(const std::string& name, const std::string& doc,
-                      const std::vector<ParameterInfo>& parameters, int variadic);
-
-/// A Python callable as a progress; None is an empty one. An exception in it cancels the work and
-/// is raised again by rethrow().
-class PythonProgress {
- public:
-  explicit PythonProgress(py::object callable) : callable_(std::move(callable)) {}
-  operator Progress();
-  /// Runs work(progress) without the GIL.
-  template <class Work>
-  auto run(Work work) {
-    const Progress progress = *this;
-    try {
-      py::gil_scoped_release release;
-      return work(progress);
-    } catch (const Cancelled&) {
-      if (raised_) std::rethrow_exception(raised_);
-      throw;
-    }
-  }
-
- private:
-  py::object callable_;
-  std::exception_ptr raised_;
-};
+                      const std::vector<ParameterInfo>& parameters, int variadic,
+                      bool takes_progress = false);
 
 /// The blend that booleans take when none is given; set by `with sardf.blend(...)`.
 BlendPointer& current_blend();

@@ -1,8 +1,11 @@
 #include "sardf/scene.hpp"
 
+#include <functional>
+
 #include "convert.hpp"
 #include "povray_gen/run.hpp"
 #include "povray_gen/scene_files.hpp"
+#include "python_progress.hpp"
 #include "sardf/bake_channels.hpp"
 #include "sardf/camera_file.hpp"
 #include "sardf/error.hpp"
@@ -154,8 +157,22 @@ std::vector<std::string> warnings(const Scene& scene, py::object callable) {
   return messages;
 }
 
-ScenePointer from_json(const std::string& text, const std::map<std::string, Field>& fields) {
-  return std::make_shared<Scene>(parse_scene(text, "", fields));
+// Fields that are solved for while the description is read report, too.
+ScenePointer read_with(py::object callable, const std::function<SceneDescription()>& read) {
+  return PythonProgress(std::move(callable)).run([&](const Progress& progress) {
+    auto scene = std::make_shared<Scene>(read());
+    if (!progress(1)) throw Cancelled();
+    return scene;
+  });
+}
+
+ScenePointer from_json(const std::string& text, const std::map<std::string, Field>& fields,
+                       py::object callable) {
+  return read_with(std::move(callable), [&] { return parse_scene(text, "", fields); });
+}
+
+ScenePointer load(const std::string& path, py::object callable) {
+  return read_with(std::move(callable), [&] { return read_scene(path); });
 }
 
 }  // namespace
@@ -164,8 +181,9 @@ void bind_scenes(py::module_& m) {
   py::class_<Scene, ScenePointer>(m, "Scene", "A solid, what it is made of, and how it is shown.")
       .def_static(
           "from_json", &from_json, py::arg("text"),
-          py::arg("fields") = std::map<std::string, Field>{},
-          "A scene from a scene file's text; `fields` are names it may use besides its own.")
+          py::arg("fields") = std::map<std::string, Field>{}, py::arg("progress") = py::none(),
+          "A scene from a scene file's text; `fields` are names it may use besides its own. "
+          "progress: as load() takes it.")
       .def(
           "to_json", [](const Scene& s) { return scene_text(s.description(), {}, "."); },
           "The scene as a scene file's text.")
@@ -224,9 +242,9 @@ void bind_scenes(py::module_& m) {
            "its own.")
       .def("section", &with_section, py::arg("remove"), py::arg("keep") = std::vector<Field>{},
            "The scene with one more cut: `remove` is taken away, the `keep` solids stay whole.");
-  m.def(
-      "load", [](const std::string& path) { return std::make_shared<Scene>(read_scene(path)); },
-      py::arg("path"), "Reads a scene file. Raises Error with all that is wrong in it.");
+  m.def("load", &load, py::arg("path"), py::arg("progress") = py::none(),
+        "Reads a scene file, and solves for its fitted fields. Raises Error with all that is wrong "
+        "in it. progress(share) may return False to cancel, which raises Cancelled.");
   m.def("schema", &scene_schema, "The JSON Schema of scene files, as text.");
 }
 

@@ -56,6 +56,8 @@ struct Constructor {
   std::vector<ParameterInfo> parameters;
   /// Makes the field. One argument for each parameter, in order, already checked.
   std::function<Field(const Constructor&, std::vector<Value>)> make;
+  /// Whether making one may take long, and then reports to the ProgressScope.
+  bool takes_progress = false;
   /// Place of the list of fields that Python takes as positional arguments, or -1: the first
   /// parameter, where it is one.
   int variadic() const;

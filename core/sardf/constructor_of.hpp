@@ -2,6 +2,7 @@
 //
 // A shape has `name`, `group`, `doc`, `parameters(V&)` as an operation has, and
 //   Expression expression() const;   Quality quality() const;   both may throw Error.
+// Where `expression` may take long, and reports to the ProgressScope, it has `takes_progress`, too.
 #pragma once
 
 #include <type_traits>
@@ -127,7 +128,10 @@ Constructor constructor_of_shape() {
             const Shape shape = with_arguments<Shape>(arguments);
             return Field(shape.expression(), shape.quality(),
                          constructed(constructor, std::move(arguments)));
-          }};
+          },
+          requires {Shape::takes_progress;
+}
+};  // namespace sardf
 }
 
 template <class B>

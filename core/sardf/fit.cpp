@@ -196,15 +196,16 @@ FitResult solved(const FitProblem& problem, const Quadrature& quadrature,
   check_memory(report.memory, problem.grid);
   FitSystem system(problem, quadrature, part_of(progress, 0, 0.2));
   const bool bounded = problem.at_least || problem.at_most;
-  check_bounds(problem, system);
-  const Progress later = part_of(progress, 0.2, bounded ? 0.5 : 0.9);
+  check_bounds(problem, system, part_of(progress, 0.2, 0.25));
+  const Progress later = part_of(progress, bounded ? 0.25 : 0.2, bounded ? 0.5 : 0.9);
   SolvedEquations found = solve(system, problem.mean, std::vector<double>(system.size()), later);
+  Cut cut;
   if (bounded) {
     const Progress within = part_of(progress, 0.5, 0.9);
     found = solve_within_bounds(problem, system, std::move(found), within);
     const std::vector<double> zeros(system.points());
     system.set_springs(zeros, zeros, within);
-    report.cut = measured_cut(problem, uncut(problem, found.coefficients), within);
+    cut = measured_cut(problem, uncut(problem, found.coefficients), within);
   }
   const Progress last = part_of(progress, 0.9, 1);
   for (const double d : system.diagonal()) report.unknowns += d > 0;
@@ -218,6 +219,9 @@ FitResult solved(const FitProblem& problem, const Quadrature& quadrature,
   report.rms_before = std::sqrt(report.energy_before / report.volume);
   report.rms_after = std::sqrt(std::max(0.0, report.energy_after) / report.volume);
   report.finer_energy = finer_energy(problem, quadrature, found.coefficients, last);
+  report.cut = cut.most;
+  report.mean = mean_within(Limits(problem), system.values(found.coefficients, last), system);
+  check_cut(problem, cut);
   result.coefficients = std::move(found.coefficients);
   return result;
 }

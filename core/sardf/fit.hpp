@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "sardf/fit_quadrature.hpp"
@@ -24,7 +25,7 @@ struct FitProblem {
   Expression start, factor, solid, values, slope, along;
   double values_weight = 1, slope_weight = 1, smoothness = 0;
   int points = 4;              // Gauss points for each cell and axis, 1 to 16
-  std::optional<double> mean;  // of F over the solid
+  std::optional<double> mean;  // of F, cut at its bounds, over the solid by the quadrature
   std::optional<double> at_least, at_most;
 
   friend bool operator==(const FitProblem&, const FitProblem&) = default;
@@ -43,6 +44,7 @@ struct FitReport {
   double finer_energy = 1;
   double volume = 0;        // of the solid (an area in two dimensions)
   double volume_error = 0;  // what the last halving of cells at its boundary changed
+  double mean = 0;          // of F, cut at its bounds, over the solid by the quadrature
   /// The most that F is cut by at_least and at_most at points between those of the quadrature.
   double cut = 0;
   double memory = 0;  // bytes, estimated before the work
@@ -56,9 +58,10 @@ struct FitResult {
 
 /// Solves. Throws Error: no term at all, a field that depends on z in two dimensions, too much
 /// memory, an empty solid, values that are not finite, contradictions between mean, bounds and
-/// start, a quadrature too coarse, equations that do not determine the function. Coefficients of
-/// functions that no point of the quadrature sees are 0. The result does not depend on the number
-/// of threads.
+/// start, bounds that cut off more than 5 % of the function's range between the points of the
+/// quadrature, a quadrature too coarse, equations that do not determine the function. Coefficients
+/// of functions that no point of the quadrature sees are 0. The result does not depend on the
+/// number of threads.
 FitResult fit(const FitProblem& problem, const Progress& progress = {});
 /// With another quadrature than that of the solid.
 FitResult fit(const FitProblem& problem, const Quadrature& quadrature,
@@ -68,6 +71,11 @@ FitResult fit(const FitProblem& problem, const Quadrature& quadrature,
 /// once.
 std::shared_ptr<const FitResult> recent_fit(const FitProblem& problem,
                                             const Progress& progress = {});
+
+/// 16 hexadecimal digits that tell problems apart: of the expressions, the grid, the weights and
+/// all other numbers. The same for equal problems in every process and on every machine; numbers
+/// count to 12 digits. Of what an expression is made of by data (meshes, curves), every bit counts.
+std::string fingerprint_of(const FitProblem& problem);
 
 /// start + factor * Phi, cut at the bounds that the problem has.
 Expression fitted_expression(const FitProblem& problem, std::vector<double> coefficients);

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <optional>
 
 #include "sardf/arithmetic.hpp"
+#include "sardf/box_search.hpp"
 #include "sardf/scene_checks.hpp"
 #include "sardf/short_number.hpp"
 
@@ -11,9 +11,8 @@ namespace sardf {
 
 namespace {
 
-// Of the diagonal: features this near to each other touch, and boxes this small are not halved.
+// Of the diagonal: features this near to each other touch.
 constexpr double touching = 1e-9;
-constexpr double smallest_box = 1.0 / 256;
 constexpr int most_boxes = 4000;
 constexpr int most_descents = 150;
 constexpr int most_steps = 60;
@@ -22,8 +21,6 @@ constexpr int steps_of_grace = 4;
 constexpr double least_gain = 0.98;
 // Of the larger of 1 and the values: a difference up to this is none.
 constexpr double same_value = 1e-6;
-// Halvings between two descents.
-constexpr int descend_every = 6;
 
 struct FeaturesOfRule {
   std::vector<Expression> distances;
@@ -69,33 +66,6 @@ bool differ(const std::vector<double>& a, const std::vector<double>& b) {
   return false;
 }
 
-// A value that is not negative, and its gradient; zero where it has none.
-struct Slope3 {
-  double value;
-  Vec3 gradient;
-};
-
-Slope3 slope_at(const Evaluator& distance, const Vec3& point) {
-  Slope3 at;
-  distance.gradients(point.data(), 1, &at.value, at.gradient.data());
-  if (!(norm(at.gradient) < infinity)) at.gradient = {};
-  return at;
-}
-
-// The shortest step on which both distances vanish to first order.
-Vec3 common_step(const Slope3& a, const Slope3& b) {
-  const double aa = dot(a.gradient, a.gradient), bb = dot(b.gradient, b.gradient);
-  const double ab = dot(a.gradient, b.gradient), determinant = aa * bb - ab * ab;
-  if (!(determinant > 1e-14 * aa * bb)) {
-    const Vec3 first = -a.value / std::max(aa, 1e-30) * a.gradient;
-    const Vec3 second = -b.value / std::max(bb, 1e-30) * b.gradient;
-    return 0.5 * (first + second);
-  }
-  const double p = (-a.value * bb + b.value * ab) / determinant;
-  const double q = (-b.value * aa + a.value * ab) / determinant;
-  return p * a.gradient + q * b.gradient;
-}
-
 class Search {
  public:
   Search(const FeaturesOfRule& features, const Expression& share, const CheckedPlace& place)
@@ -118,26 +88,11 @@ class Search {
   }
 
   std::vector<Contradiction> run(const Progress& progress) {
-    std::deque<Box> open{{place_.box, 0}};
-    for (int used = 0; !open.empty() && !pairs_.empty() && used < most_boxes; ++used) {
-      if (progress && !progress(double(used) / most_boxes)) throw Cancelled();
-      const Box box = open.front();
-      open.pop_front();
-      const std::vector<Pair> near = possible_in(box.box);
-      if (near.empty()) continue;
-      const Vec3 size = box.box.size();
-      const size_t axis = size_t(std::max_element(size.begin(), size.end()) - size.begin());
-      const bool last = size[axis] < smallest_box * diagonal_;
-      if (last || box.level % descend_every == 0) {
-        for (const Pair& pair : near) descend(pair, box.box.center());
-      }
-      if (last) continue;
-      for (const bool upper : {false, true}) {
-        Box half{box.box, box.level + 1};
-        (upper ? half.box.lo : half.box.hi)[axis] = box.box.center()[axis];
-        open.push_back(half);
-      }
-    }
+    search_boxes(place_.box, most_boxes, progress, [&](const BoundingBox& box, bool descends) {
+      const std::vector<Pair> near = possible_in(box);
+      for (size_t i = 0; descends && i < near.size(); ++i) descend(near[i], box.center());
+      return !near.empty();
+    });
     return std::move(found_);
   }
 
@@ -146,12 +101,9 @@ class Search {
     size_t first, second;
     friend bool operator==(const Pair&, const Pair&) = default;
   };
-  struct Box {
-    BoundingBox box;
-    int level;
-  };
 
   std::vector<Pair> possible_in(const BoundingBox& box) const {
+    if (pairs_.empty()) return {};
     std::vector<Interval> out(2 + n_ * (1 + channels_));
     all_.intervals(box, out.data());
     if (out[0].hi < -place_.tolerance || out[1].hi <= 0) return {};
@@ -177,21 +129,21 @@ class Search {
   // that does not bring them nearer.
   std::optional<Vec3> touch_near(const Pair& pair, Vec3 point) const {
     const Evaluator &first = distances_[pair.first], &second = distances_[pair.second];
-    Slope3 a = slope_at(first, point), b = slope_at(second, point);
+    ValueAndGradient a = value_and_gradient(first, point), b = value_and_gradient(second, point);
     for (int step = 0; step < most_steps; ++step) {
       if (!(std::max(a.value, b.value) > touching * diagonal_)) return point;
-      Vec3 by = common_step(a, b);
+      Vec3 by = common_newton_step(a, b);
       const double longest = 0.25 * diagonal_, length = norm(by);
       if (!(length < infinity)) return std::nullopt;
       if (length > longest) by = longest / length * by;
       Vec3 next = point + by;
-      Slope3 c = slope_at(first, next), d = slope_at(second, next);
+      ValueAndGradient c = value_and_gradient(first, next), d = value_and_gradient(second, next);
       if (!(c.value + d.value < 0.9 * (a.value + b.value))) {
         next = point - a.value * a.gradient;
-        const Slope3 then = slope_at(second, next);
+        const ValueAndGradient then = value_and_gradient(second, next);
         next = next - then.value * then.gradient;
-        c = slope_at(first, next);
-        d = slope_at(second, next);
+        c = value_and_gradient(first, next);
+        d = value_and_gradient(second, next);
       }
       if (step >= steps_of_grace && !(c.value + d.value < least_gain * (a.value + b.value))) {
         return std::nullopt;

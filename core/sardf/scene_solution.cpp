@@ -10,6 +10,7 @@ namespace {
 struct Solution {
   const Construction* made;
   SolvedField field;
+  std::string fingerprint;
 };
 
 std::vector<Solution> solutions(const SceneDescription& scene, const Progress& progress) {
@@ -18,15 +19,16 @@ std::vector<Solution> solutions(const SceneDescription& scene, const Progress& p
   for (const Construction* made : names.constructions()) {
     if (!made->constructor || made->constructor->name != Fitted::name) continue;
     const std::string name = names.name_of(made);
-    all.push_back({made, {name.empty() ? Fitted::name : name, nullptr}});
+    all.push_back({made, {name.empty() ? Fitted::name : name, nullptr}, ""});
   }
   for (size_t i = 0; i < all.size(); ++i) {
     const double from = double(i) / double(all.size()), share = 1 / double(all.size());
     Progress part;
     if (progress) part = [&](double done) { return progress(from + share * done); };
     try {
-      all[i].field.result =
-          recent_fit(with_arguments<Fitted>(all[i].made->arguments).problem(), part);
+      const FitProblem problem = with_arguments<Fitted>(all[i].made->arguments).problem();
+      all[i].field.result = recent_fit(problem, part);
+      all[i].fingerprint = fingerprint_of(problem);
     } catch (const Error& error) {
       throw Error(all[i].field.name + ": " + error.message);
     }
@@ -34,10 +36,10 @@ std::vector<Solution> solutions(const SceneDescription& scene, const Progress& p
   return all;
 }
 
-size_t place_of_coefficients(const Constructor& fitted) {
+Value& argument(std::vector<Value>& arguments, const Constructor& fitted, const char* name) {
   size_t place = 0;
-  while (fitted.parameters[place].name != "coefficients") ++place;
-  return place;
+  while (fitted.parameters[place].name != name) ++place;
+  return arguments[place];
 }
 
 }  // namespace
@@ -52,7 +54,9 @@ ReplacedArguments solved_arguments(const SceneDescription& scene, const Progress
   ReplacedArguments replaced;
   for (const Solution& each : solutions(scene, progress)) {
     std::vector<Value> arguments = each.made->arguments;
-    arguments[place_of_coefficients(*each.made->constructor)] = each.field.result->coefficients;
+    const Constructor& fitted = *each.made->constructor;
+    argument(arguments, fitted, "coefficients") = each.field.result->coefficients;
+    argument(arguments, fitted, "fingerprint") = each.fingerprint;
     replaced[each.made] = std::move(arguments);
   }
   return replaced;

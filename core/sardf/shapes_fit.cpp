@@ -14,6 +14,14 @@ void check_number_of(const std::vector<double>& coefficients, const SplineGrid& 
               std::to_string(grid.size()) + ", one for each spline, are accepted");
 }
 
+void check_fingerprint(const std::string& given, const FitProblem& problem) {
+  const std::string is = fingerprint_of(problem);
+  if (given == is) return;
+  throw Error("the coefficients solve another problem: their fingerprint is " + given +
+              ", that of this one " + is +
+              "; remove coefficients and fingerprint, or run `sardf solve` again");
+}
+
 Expression expression_of(const std::optional<Field>& field) {
   return field ? field->expression() : nullptr;
 }
@@ -26,6 +34,8 @@ int points_of(double points) {
 }
 
 }  // namespace
+
+thread_local bool IgnoredCoefficients::active_ = false;
 
 Expression SplineField::expression() const {
   const SplineGrid grid = spline_grid(lower, upper, counts, degree);
@@ -56,8 +66,9 @@ FitProblem Fitted::problem() const {
 
 Expression Fitted::expression() const {
   const FitProblem p = problem();
-  if (!coefficients.empty()) {
+  if (!coefficients.empty() && !IgnoredCoefficients::active()) {
     check_number_of(coefficients, p.grid);
+    if (!fingerprint.empty()) check_fingerprint(fingerprint, p);
     return fitted_expression(p, coefficients);
   }
   return fitted_expression(p, recent_fit(p, ProgressScope::current())->coefficients);

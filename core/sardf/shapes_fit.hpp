@@ -1,6 +1,8 @@
 // Functions made of B-splines: given by their coefficients, or solved for.
 #pragma once
 
+#include <utility>
+
 #include "sardf/constructor_of.hpp"
 #include "sardf/fit.hpp"
 #include "sardf/op_list.hpp"
@@ -46,6 +48,7 @@ struct Fitted {
           "start + factor * Phi, where Phi is a sum of uniform B-splines on "
           "a box that brings the function near to what is wanted: the sum "
           "of the weighted terms given is as small as can be.";
+  static constexpr bool takes_progress = true;
   Field start;
   std::optional<Field> factor;
   Vec3 lower{}, upper{};
@@ -59,6 +62,7 @@ struct Fitted {
   double slope_weight = 1, smoothness = 0;
   std::optional<double> mean, at_least, at_most;
   std::vector<double> coefficients;
+  std::string fingerprint;
 
   template <class V>
   static void parameters(V& v) {
@@ -102,12 +106,32 @@ struct Fitted {
                 "the solution, as `sardf solve` writes it; remove it after any change of the other "
                 "parameters"},
       &Fitted::coefficients);
+    v(Parameter{"fingerprint",
+                "of the problem that the coefficients solve, as `sardf solve` writes it: another "
+                "problem is an error; without one they are taken as they are"},
+      &Fitted::fingerprint);
   }
   /// Throws Error.
   FitProblem problem() const;
-  /// Solves where there are no coefficients; progress goes to the ProgressScope.
+  /// Solves where there are no coefficients; progress goes to the ProgressScope. Throws Error where
+  /// there are some with the fingerprint of another problem.
   Expression expression() const;
   Quality quality() const { return {}; }
+};
+
+/// While there is one on this thread, fields are solved for whatever coefficients they carry.
+class IgnoredCoefficients {
+ public:
+  IgnoredCoefficients() : outer_(std::exchange(active_, true)) {}
+  ~IgnoredCoefficients() { active_ = outer_; }
+  IgnoredCoefficients(const IgnoredCoefficients&) = delete;
+  IgnoredCoefficients& operator=(const IgnoredCoefficients&) = delete;
+
+  static bool active() { return active_; }
+
+ private:
+  static thread_local bool active_;
+  bool outer_;
 };
 
 using FitShapes = OpList<SplineField, Fitted>;

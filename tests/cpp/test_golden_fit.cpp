@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "golden.hpp"
+#include "golden_fields.hpp"
 #include "sardf/arithmetic.hpp"
 #include "sardf/constructor.hpp"
 #include "sardf/fit.hpp"
@@ -17,25 +17,12 @@ using golden::Table;
 class GoldenFits : public golden::InEachFolder {};
 INSTANTIATE_TEST_SUITE_P(Each, GoldenFits, golden::each_folder(), golden::folder_name);
 
-Expression squared(const Expression& a) { return a * a; }
-
+// A derivative of cubics on spans of a quarter loses about their reciprocal.
 void expect_rows(const Table& table, const Expression& f) {
-  const bool deep = table.find("z") >= 0;
-  const Evaluator evaluator(f);
-  for (const std::vector<double>& row : table.rows) {
-    const Vec3 at{row[table.column("x")], row[table.column("y")],
-                  deep ? row[table.column("z")] : 0};
-    double value;
-    Vec3 gradient;
-    evaluator.gradients(at.data(), 1, &value, gradient.data());
-    ASSERT_NEAR(value, row[table.column("F")], table.tolerance());
-    const char* names[3] = {"F_gx", "F_gy", "F_gz"};
-    for (size_t k = 0; k < (deep ? 3 : 2); ++k) {
-      // A derivative of cubics on spans of a quarter loses about their reciprocal.
-      ASSERT_NEAR(gradient[k], row[table.column(names[k])], 10 * table.tolerance());
-    }
-  }
+  golden::expect_field(table, f, "F", {10 * table.tolerance()});
 }
+
+Expression squared(const Expression& a) { return a * a; }
 
 // F = 0 on x = 0, 1 on x = 1; from inverse distances with exponent 2.
 TEST_P(GoldenFits, SlabByRitz) {

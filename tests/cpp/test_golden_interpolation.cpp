@@ -2,36 +2,19 @@
 // of the golden files stand in as the coordinates x and y.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
-#include "golden.hpp"
+#include "golden_fields.hpp"
 #include "sardf/scene.hpp"
-#include "sardf/scene_file.hpp"
 
 namespace sardf {
 namespace {
 
+using golden::number;
+using golden::two;
 using GoldenInterpolation = golden::InEachFolder;
 
-std::string number(const golden::Table& table, const char* name) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.17g", table.parameter(name).get<double>());
-  return text;
-}
-
-// The fields of a scene file whose features "S" and "ring" are at distances x and y.
+// Of a scene file whose features "S" and "ring" are at distances x and y.
 std::map<std::string, Field> fields(const std::string& members) {
-  const std::string text =
-      R"({"sardf": 1, "solid": {"sphere": {"radius": 5}}, "fields": {"S": "=x", "ring": "=y", )" +
-      members + "}}";
-  std::map<std::string, Field> all;
-  for (const NamedField& named : parse_scene(text, "").fields) all[named.name] = named.field;
-  return all;
-}
-
-std::string two(const std::string& first, const std::string& second) {
-  return R"({"value_of": {"inverse_distance": {"features": [{"at": "S", )" + first +
-         R"(}, {"at": "ring", )" + second + "}]}}}";
+  return golden::fields(R"("S": "=x", "ring": "=y")", members);
 }
 
 void expect_values(const golden::Table& table, const Field& field, const std::string& column) {

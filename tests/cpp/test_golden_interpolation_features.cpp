@@ -2,26 +2,15 @@
 // distances, what is interpolated, and its gradient.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
-#include "golden.hpp"
-#include "sardf/evaluate.hpp"
+#include "golden_fields.hpp"
 #include "sardf/scene.hpp"
-#include "sardf/scene_file.hpp"
 
 namespace sardf {
 namespace {
 
+using golden::number;
+using golden::two;
 using GoldenInterpolationFeatures = golden::InEachFolder;
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
-}
-std::string number(const golden::Table& table, const char* name) {
-  return number(table.parameter(name).get<double>());
-}
 
 // Two-dimensional points at z = 0.
 std::string corners(const golden::Table& table, const char* name) {
@@ -33,48 +22,20 @@ std::string corners(const golden::Table& table, const char* name) {
   return "[" + text + "]";
 }
 
-std::string with_features(const golden::Table& table, const std::string& members) {
+std::string features(const golden::Table& table) {
   const auto& center = table.parameter("ring_c");
-  return R"("fields": {"S": {"bspline_curve": {"control_points": )" +
-         corners(table, "S_control_points") + R"(}}, "ring": {"circle": {"center": [)" +
-         number(center.at(0).get<double>()) + ", " + number(center.at(1).get<double>()) +
-         R"(, 0], "radius": )" + number(table, "ring_r") + "}}" + members + "}";
+  return R"("S": {"bspline_curve": {"control_points": )" + corners(table, "S_control_points") +
+         R"(}}, "ring": {"circle": {"center": [)" + number(center.at(0).get<double>()) + ", " +
+         number(center.at(1).get<double>()) + R"(, 0], "radius": )" + number(table, "ring_r") +
+         "}}";
 }
 
 std::map<std::string, Field> fields(const golden::Table& table, const std::string& members) {
-  const std::string text =
-      R"({"sardf": 1, "solid": {"sphere": {"radius": 5}}, )" + with_features(table, members) + "}";
-  std::map<std::string, Field> all;
-  for (const NamedField& named : parse_scene(text, "").fields) all[named.name] = named.field;
-  return all;
+  return golden::fields(features(table), members);
 }
 
-std::string two(const std::string& first, const std::string& second) {
-  return R"({"value_of": {"inverse_distance": {"features": [{"at": "S", )" + first +
-         R"(}, {"at": "ring", )" + second + "}]}}}";
-}
-
-Vec3 point_of(const golden::Table& table, const std::vector<double>& row) {
-  const bool has_z = table.find("z") >= 0;
-  return {row[table.column("x")], row[table.column("y")], has_z ? row[table.column("z")] : 0};
-}
-
-// Values, and the gradient where the file has one, which is NaN where there is none.
 void expect_field(const golden::Table& table, const Expression& field, const std::string& column) {
-  const Evaluator evaluator(field);
-  for (const std::vector<double>& row : table.rows) {
-    const Vec3 point = point_of(table, row);
-    double value;
-    Vec3 gradient;
-    evaluator.gradients(point.data(), 1, &value, gradient.data());
-    EXPECT_NEAR(value, row[table.column(column)], table.tolerance()) << column;
-    for (int axis = 0; axis < 3; ++axis) {
-      const int place = table.find(column + "_g" + "xyz"[axis]);
-      if (place < 0 || std::isnan(row[size_t(place)])) continue;
-      const double expected = row[size_t(place)];
-      EXPECT_NEAR(gradient[axis], expected, 1e-6 * std::max(1.0, std::abs(expected))) << column;
-    }
-  }
+  golden::expect_field(table, field, column, {1e-6, 1e-6});
 }
 
 TEST_P(GoldenInterpolationFeatures, HaveTheDistances) {
@@ -90,8 +51,8 @@ TEST_P(GoldenInterpolationFeatures, MakeFigure11) {
   const std::string first = "\"value\": " + number(table, "P1") + exponent;
   const std::string second = "\"value\": \"=" + number(table, "P2") + "*exp(-ring^2)\"" + exponent;
   const std::string influence = ", \"influence\": \"=exp(" + number(table, "lambda_rate") + "*u)\"";
-  const auto all = fields(
-      table, ", \"a\": " + two(first, second) + ", \"b\": " + two(first + influence, second));
+  const auto all =
+      fields(table, "\"a\": " + two(first, second) + ", \"b\": " + two(first + influence, second));
   expect_field(table, all.at("a").expression(), "a");
   expect_field(table, all.at("b").expression(), "b");
 }
@@ -101,7 +62,7 @@ TEST_P(GoldenInterpolationFeatures, MakeFigure12) {
   const std::string first = "\"value\": \"=1 + " + number(table, "F1") + "*S\", \"exponent\": ";
   const std::string second = "\"value\": " + number(table, "P2");
   for (const std::string k : {"1", "2", "3"}) {
-    const auto all = fields(table, ", \"F\": " + two(first + k, second));
+    const auto all = fields(table, "\"F\": " + two(first + k, second));
     expect_field(table, all.at("F").expression(), "k" + k);
   }
 }
@@ -110,7 +71,7 @@ TEST_P(GoldenInterpolationFeatures, MakeTheGeneralForm) {
   const golden::Table table = read("bst_form10");
   const std::string first = "\"value\": \"=1 + " + number(table, "F1") + "*S\", \"exponent\": 2";
   const std::string second = "\"value\": " + number(table, "P2");
-  const auto all = fields(table, ", \"P\": " + two(first, second) + ", \"F\": \"=P + (" +
+  const auto all = fields(table, "\"P\": " + two(first, second) + ", \"F\": \"=P + (" +
                                      number(table, "phi") + "*x + 0.3*y)*S^2*ring\"");
   expect_field(table, all.at("P").expression(), "P");
   expect_field(table, all.at("F").expression(), "F");
@@ -128,8 +89,8 @@ TEST_P(GoldenInterpolationFeatures, MakeFigure15) {
       shares(number(table, "B1") + "*(1 - 0.1*ring^2)", number(table, "B2") + "*exp(-ring^2)");
   const auto scene = [&](const std::string& first, const std::string& second) {
     return Scene(
-        parse_scene("{\"sardf\": 1, " + with_features(table, "") +
-                        R"(, "solid": {"box": {"center": [0, 1.5, 0], "size": [3, 3, 0.1]}},
+        parse_scene("{\"sardf\": 1, \"fields\": {" + features(table) +
+                        R"(}, "solid": {"box": {"center": [0, 1.5, 0], "size": [3, 3, 0.1]}},
             "materials": {"one": {}, "two": {}, "three": {}},
             "fractions": {"inverse_distance": {"features": [{"at": "S", )" +
                         a + first + "}, {\"at\": \"ring\", " + b + second + "}]}}}",
@@ -155,8 +116,7 @@ TEST_P(GoldenInterpolationFeatures, MakeFigure14a) {
   }
   // Two turns in the cube's height of twice its half: the pitch is the half.
   const std::string text =
-      R"json({"sardf": 1, "solid": {"sphere": {"radius": 5}}, "fields": {"u1": "=1/()json" + walls +
-      "1/abs(length(x, y) - " + number(table, "hole_r") +
+      R"json("u1": "=1/()json" + walls + "1/abs(length(x, y) - " + number(table, "hole_r") +
       R"json())", "helix": {"helix": {"radius": )json" + number(table, "helix_rad") +
       R"json(, "pitch": )json" + half +
       R"json(, "start": -360, "end": 360}}, "u2": "=max(0, helix - )json" +
@@ -164,9 +124,8 @@ TEST_P(GoldenInterpolationFeatures, MakeFigure14a) {
       R"json()", "P": {"value_of": {"inverse_distance": {"features": [
         {"at": "u1", "value": "=1 - )json" +
       number(table, "P1_coef") + R"json(*u1^2"}, {"at": "u2", "value": "=)json" +
-      number(table, "P2_coef") + R"json(*exp(-u2^2)"}]}}}}})json";
-  std::map<std::string, Field> all;
-  for (const NamedField& named : parse_scene(text, "").fields) all[named.name] = named.field;
+      number(table, "P2_coef") + R"json(*exp(-u2^2)"}]}}})json";
+  const auto all = golden::fields(text, "");
   expect_field(table, all.at("u1").expression(), "u1");
   expect_field(table, all.at("u2").expression(), "u2");
   expect_field(table, all.at("P").expression(), "P");

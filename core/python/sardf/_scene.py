@@ -71,12 +71,13 @@ def Scene(solid, materials=None, fractions=None, **rest):
     materials: {name: {"color": "#8a8f98" or (r, g, b) linear, "density": g/cm³, ...}}.
     fractions: {"inverse_distance": {"features": [{"at": field, "material": name}, ...]}} or any
         other rule of scene files.
-    rest: title, units, attributes, sections, bounds, lipschitz, view, fields.
+    rest: title, units, attributes, sections, bounds, lipschitz, view, fields; progress, as
+        sardf.load takes it.
 
     Returns sardf._core.Scene; raises Error where a scene file would.
     """
     names = _Names()
-    fields = rest.pop("fields", {})
+    fields, progress = rest.pop("fields", {}), rest.pop("progress", None)
     names.fields.update(fields)
     document = {"sardf": 1, **rest, "solid": solid}
     if materials is not None:
@@ -84,7 +85,7 @@ def Scene(solid, materials=None, fractions=None, **rest):
     if fractions is not None:
         document["fractions"] = fractions
     text = json.dumps(names.plain(document))
-    return _core.Scene.from_json(text, names.fields)
+    return _core.Scene.from_json(text, names.fields, progress)
 
 
 Scene.from_json = _core.Scene.from_json

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """From a scene file to the arrays that Blender needs; no bpy here, so that a thread may run it."""
 
-import difflib
 import threading
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,7 +8,6 @@ from typing import Any
 
 CHANNELS = ("base_color", "roughness", "metallic", "emission", "fractions")
 GRAIN = "grain_direction"  # the attribute that directs metal's reflections unless one is named
-DIRECTION = "a vector of 3 components"
 MESH_SHARE = 0.4  # of the time, for the progress bar: meshing took 0.2 to 0.6 of it on our scenes
 
 
@@ -59,7 +57,7 @@ def make_part(sardf, request, progress=None):
         return lambda share: progress(start + (stop - start) * share)
 
     scene = sardf.load(request.path)
-    tangent = tangent_of(sardf, scene, request.tangent)
+    tangent = tangent_of(scene, request.tangent)
     mesh = scene.mesh(
         resolution=request.resolution,
         sections=request.sections,
@@ -94,34 +92,20 @@ def attributes_at(scene, points):
     return attributes
 
 
-def tangent_of(sardf, scene, name):
+def tangent_of(scene, name):
     """The checked name of the attribute along which metal is brushed, or "" for none.
 
     A name must be that of an attribute with 3 components: raises sardf.Error. "" stands for GRAIN
     where the scene has such a vector of that name.
     """
+    # sardf is found by core.load(), not when Blender reads this file.
+    from sardf._words import components_of, vector_attribute
+
+    if name:
+        vector_attribute(scene, name, (3,), "metal is brushed along")
+        return name
     known = scene.attributes
-    if not name:
-        return GRAIN if GRAIN in known and kind_of(known[GRAIN]) == DIRECTION else ""
-    if name not in known:
-        accepted = f"accepted are {', '.join(known)}" if known else "the scene has none"
-        near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
-        hint = f"; did you mean '{near[0]}'?" if near else ""
-        raise sardf.Error(f"there is no attribute '{name}'; {accepted}{hint}")
-    found = kind_of(known[name])
-    if found != DIRECTION:
-        raise sardf.Error(
-            f"the attribute '{name}' is {found}; metal is brushed along a vector of 3 components"
-        )
-    return name
-
-
-def kind_of(evaluate):
-    """What an attribute gives at a point, in words: DIRECTION is what metal is brushed along."""
-    values = evaluate([(0.0, 0.0, 0.0)])
-    if isinstance(values, dict):
-        return f"made of the components {', '.join(values)}"
-    return "a number" if values.ndim == 1 else f"a vector of {values.shape[1]} components"
+    return GRAIN if GRAIN in known and components_of(known[GRAIN]) == 3 else ""
 
 
 class Job:

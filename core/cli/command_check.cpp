@@ -1,7 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iostream>
 #include <set>
 
@@ -12,6 +11,7 @@
 #include "sardf/contour.hpp"
 #include "sardf/field_parts.hpp"
 #include "sardf/scene.hpp"
+#include "sardf/short_number.hpp"
 #include "sardf/volume.hpp"
 
 namespace sardf {
@@ -23,15 +23,7 @@ struct Options {
   int resolution = 72;
 };
 
-std::string text(double value) {
-  char out[32];
-  std::snprintf(out, sizeof out, "%.6g", value);
-  return out;
-}
-
-std::string text(const Vec3& v) {
-  return "(" + text(v[0]) + ", " + text(v[1]) + ", " + text(v[2]) + ")";
-}
+std::string text(double value) { return short_number(value, 6); }
 
 const char* name(Exactness e) {
   return e == Exactness::exact ? "exact" : e == Exactness::bound ? "bound" : "estimate";
@@ -63,10 +55,8 @@ std::string text(const CertifiedBound& bound) {
 
 // "within about 0.01 %"
 std::string accuracy(const MaterialVolumes& volumes) {
-  char out[32];
   const double percent = volumes.total > 0 ? 100 * volumes.error / volumes.total : 0;
-  std::snprintf(out, sizeof out, "%.1g", std::max(percent, 0.01));
-  return std::string("within about ") + out + " %";
+  return "within about " + short_number(std::max(percent, 0.01), 1) + " %";
 }
 
 void add_volumes(Table& table, const Scene& scene, int resolution) {
@@ -136,7 +126,8 @@ void check(const Options& options) {
   Table table;
   table.row("title", d.title);
   table.row("units", d.units);
-  table.row("bounds", text(scene.bounds().lo) + " to " + text(scene.bounds().hi) + ", certified");
+  table.row("bounds", short_point(scene.bounds().lo.data()) + " to " +
+                          short_point(scene.bounds().hi.data()) + ", certified");
   add_volumes(table, scene, options.resolution);
   const Evaluator solid(scene.solid());
   if (d.stated_lipschitz) {

@@ -10,6 +10,7 @@
 #include "cli/scene_option.hpp"
 #include "cli/write_text.hpp"
 #include "sardf/error.hpp"
+#include "sardf/number_text.hpp"
 #include "sardf/scene.hpp"
 
 namespace sardf {
@@ -80,11 +81,6 @@ std::string header(const Scene& scene) {
   return text + "\n";
 }
 
-void append(std::string& text, double value) {
-  char number[32];
-  text.append(number, std::to_chars(number, number + sizeof number, value).ptr);
-}
-
 void evaluate(const Options& options) {
   if (options.scene.path == "-" && options.points == "-") {
     throw Error("standard input cannot be both the scene and the points");
@@ -104,12 +100,12 @@ void evaluate(const Options& options) {
   for (size_t i = 0; i < n; ++i) {
     const double* row = &values[i * outputs.size()];
     for (int axis = 0; axis < 3; ++axis) {
-      append(text, points[3 * i + axis]);
+      append_number(text, points[3 * i + axis]);
       text += ',';
     }
-    append(text, row[0]);
-    for (size_t m = 0; m < materials; ++m) append(text += ',', fractions[i * materials + m]);
-    for (size_t k = 1; k < outputs.size(); ++k) append(text += ',', row[k]);
+    append_number(text, row[0]);
+    for (size_t m = 0; m < materials; ++m) append_number(text += ',', fractions[i * materials + m]);
+    for (size_t k = 1; k < outputs.size(); ++k) append_number(text += ',', row[k]);
     text += '\n';
   }
   write_text(options.output, text);

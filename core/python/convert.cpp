@@ -1,12 +1,12 @@
 #include "convert.hpp"
 
 #include <algorithm>
-#include <charconv>
 
 #include "python_progress.hpp"
 #include "sardf/error.hpp"
 #include "sardf/formula.hpp"
 #include "sardf/fractions.hpp"
+#include "sardf/number_text.hpp"
 #include "sardf/scene_file.hpp"
 
 namespace sardf {
@@ -137,11 +137,6 @@ std::vector<PlaneSection> sections_from(const ParameterInfo& p, const py::handle
 BlendPointer blend_from(const ParameterInfo& p, const py::handle& value) {
   if (!py::isinstance<Blend>(value)) wrong_type(p, value);
   return py::cast<BlendPointer>(value);
-}
-
-std::string number_text(double value) {
-  char text[32];
-  return std::string(text, std::to_chars(text, text + sizeof text, value).ptr);
 }
 
 struct DefaultText {

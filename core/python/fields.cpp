@@ -5,6 +5,7 @@
 #include "convert.hpp"
 #include "sardf/certify.hpp"
 #include "sardf/error.hpp"
+#include "sardf/field_parts.hpp"
 
 namespace sardf {
 
@@ -166,7 +167,11 @@ void bind_fields(py::module_& m) {
             return py::make_tuple(exactness_name(f.quality().inside),
                                   exactness_name(f.quality().outside));
           },
-          "('exact' | 'bound' | 'estimate') inside and outside.");
+          "('exact' | 'bound' | 'estimate') inside and outside.")
+      .def_property_readonly(
+          "is_distance", &is_distance,
+          "Whether its values are distances in scene units, or estimates of them as blends make; "
+          "not of formulas and functions.");
   bind_operators(field);
 }
 

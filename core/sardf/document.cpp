@@ -1,9 +1,8 @@
 #include "sardf/document.hpp"
 
-#include <charconv>
-
 #include "sardf/constructor.hpp"
 #include "sardf/formula_functions.hpp"
+#include "sardf/number_text.hpp"
 #include "sardf/scene_file_rules.hpp"
 
 namespace sardf {
@@ -22,11 +21,6 @@ constexpr Group groups[] = {
     {"transform", "Moving a field"},
     {"function", "Functions of points and distances: they count as formulas do"},
 };
-
-std::string number_text(double a) {
-  char text[40];
-  return std::string(text, std::to_chars(text, text + sizeof text, a).ptr);
-}
 
 template <class Numbers>
 std::string numbers_text(const Numbers& all) {

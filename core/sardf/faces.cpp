@@ -7,6 +7,7 @@
 #include "sardf/ops_features.hpp"
 #include "sardf/ops_plane.hpp"
 #include "sardf/shapes_transform.hpp"
+#include "sardf/short_number.hpp"
 
 namespace sardf {
 
@@ -138,9 +139,7 @@ Chosen chosen_faces(const std::vector<double>& numbers, size_t count) {
       chosen.insert(size_t(number));
       continue;
     }
-    char text[32];
-    std::snprintf(text, sizeof text, "%g", number);
-    throw Error("there is no face " + std::string(text) + ": the solid has " +
+    throw Error("there is no face " + short_number(number, 6) + ": the solid has " +
                 std::to_string(count) + " faces, numbered from 0 to " + std::to_string(count - 1));
   }
   return {chosen.begin(), chosen.end()};

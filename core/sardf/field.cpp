@@ -1,19 +1,13 @@
 #include "sardf/field.hpp"
 
-#include <charconv>
 #include <filesystem>
 
 #include "sardf/arithmetic.hpp"
+#include "sardf/number_text.hpp"
 
 namespace sardf {
 
 namespace {
-
-std::string number_text(double value) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-  return std::string(text, end);
-}
 
 // The operand of a formula: its own text in parentheses when it is a formula whose names mean the
 // same in `names`, else a name for it.

@@ -1,7 +1,7 @@
-#include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "sardf/json_document.hpp"
+#include "sardf/number_text.hpp"
 
 namespace sardf {
 
@@ -11,12 +11,6 @@ using Type = JsonValue::Type;
 
 std::string quoted(const std::string& text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
-
-std::string number_text(double a) {
-  char text[40];
-  const auto end = std::to_chars(text, text + sizeof text, a).ptr;
-  return std::string(text, end);
 }
 
 void print(const JsonValue& value, std::string& to);

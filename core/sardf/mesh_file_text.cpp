@@ -1,9 +1,9 @@
 // PLY and OBJ.
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "sardf/mesh_file_formats.hpp"
+#include "sardf/number_text.hpp"
 #include "sardf/short_number.hpp"
 
 namespace sardf::mesh_file {
@@ -63,10 +63,8 @@ class Lines {
     return *this;
   }
   Lines& number(double value) {
-    char buffer[32];
-    const auto end = std::to_chars(buffer, buffer + sizeof buffer, float(value)).ptr;
     text_ += ' ';
-    text_.append(buffer, end);
+    append_number(text_, float(value));
     return *this;
   }
   Lines& count(size_t value) {

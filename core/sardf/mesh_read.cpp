@@ -11,6 +11,7 @@
 
 #include "sardf/mesh_read_formats.hpp"
 #include "sardf/polygon_triangles.hpp"
+#include "sardf/short_number.hpp"
 
 namespace sardf {
 
@@ -118,10 +119,8 @@ void PolygonMesh::fail(const std::string& message, uint64_t place) const {
 void PolygonMesh::add_vertex(const Vec3& at, uint64_t place) {
   for (const double a : at) {
     if (std::abs(a) <= largest_coordinate) continue;
-    std::ostringstream found;
-    found << a;
     fail("vertex " + std::to_string(vertices_.size()) + ", counted from 0, has the coordinate " +
-             found.str() + "; a finite number of magnitude up to 1e100 is accepted",
+             short_number(a, 6) + "; a finite number of magnitude up to 1e100 is accepted",
          place);
   }
   // Adding 0 leaves no negative zeros, so that equal positions have equal bits.

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <limits>
 #include <map>
-#include <sstream>
 
 #include "sardf/error.hpp"
 #include "sardf/mesh_intersections.hpp"
+#include "sardf/short_number.hpp"
 
 namespace sardf {
 
@@ -328,9 +328,7 @@ PointSetPointer surface_of_mesh(const MeshDataPointer& data, const std::vector<d
       wanted[size_t(face)] = true;
       continue;
     }
-    std::ostringstream found;
-    found << face;
-    throw Error("faces names face " + found.str() + "; whole numbers from 0 to " +
+    throw Error("faces names face " + short_number(face, 6) + "; whole numbers from 0 to " +
                 std::to_string(all.polygon_count - 1) + " are accepted for this mesh");
   }
   TriangleMesh part;

@@ -5,7 +5,8 @@
 
 #include <algorithm>
 #include <atomic>
-#include <sstream>
+
+#include "sardf/short_number.hpp"
 
 namespace sardf {
 
@@ -37,12 +38,6 @@ void for_all(size_t n, const Body& body) {
       for (size_t i = part * grain; i < std::min(n, (part + 1) * grain); ++i) body(i);
     });
   });
-}
-
-std::string text_of(const Vec3& p) {
-  std::ostringstream text;
-  text << '(' << p[0] << ", " << p[1] << ", " << p[2] << ')';
-  return text.str();
 }
 
 }  // namespace
@@ -87,11 +82,12 @@ std::string MeshTopology::edge_fault(uint32_t half_edge) const {
     along += from == a && to == b;
     back += from == b && to == a;
   }
-  std::ostringstream text;
-  text << "has an edge, from " << text_of(tree_.from_local(tree_.vertices()[a])) << " to "
-       << text_of(tree_.from_local(tree_.vertices()[b])) << ", along which " << along
-       << (along == 1 ? " triangle runs" : " triangles run") << " and " << back << " back";
-  return text.str();
+  const auto place = [&](uint32_t v) {
+    return short_point(tree_.from_local(tree_.vertices()[v]).data());
+  };
+  return "has an edge, from " + place(a) + " to " + place(b) + ", along which " +
+         std::to_string(along) + (along == 1 ? " triangle runs" : " triangles run") + " and " +
+         std::to_string(back) + " back";
 }
 
 std::optional<MeshTopology::Fault> MeshTopology::fault() const {
@@ -125,7 +121,8 @@ std::optional<MeshTopology::Fault> MeshTopology::fault() const {
   for (uint32_t h = 3 * triangle; h < 3 * triangle + 3; ++h) {
     if (twins_[h] == none) return Fault{edge_fault(h), triangle};
   }
-  return Fault{"has a corner, " + text_of(tree_.from_local(tree_.vertices()[start(worst)])) +
+  return Fault{"has a corner, " +
+                   short_point(tree_.from_local(tree_.vertices()[start(worst)]).data()) +
                    ", where several fans of faces meet",
                triangle};
 }

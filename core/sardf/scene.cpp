@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "sardf/arithmetic.hpp"
@@ -10,6 +11,7 @@
 #include "sardf/error.hpp"
 #include "sardf/field_parts.hpp"
 #include "sardf/shapes_combine.hpp"
+#include "sardf/short_number.hpp"
 #include "sardf/unit_vectors.hpp"
 
 namespace sardf {
@@ -25,29 +27,22 @@ constexpr LengthUnit length_units[] = {
 
 [[noreturn]] void fail(const SceneDescription& scene, const std::string& pointer,
                        const std::string& message) {
-  const auto line = scene.source.lines.find(pointer);
-  if (line == scene.source.lines.end()) throw Error(message, scene.source.file, 0, "");
-  throw Error(message, scene.source.file, line->second, pointer);
+  throw scene.source.error(message, pointer);
 }
 
-// Runs f; its errors get the place in the scene file.
+// Runs f; its errors get the place in the scene file unless they name one.
 template <class F>
 auto located(const SceneDescription& scene, const std::string& pointer, F f) {
   try {
     return f();
   } catch (const Error& error) {
+    if (!error.pointer.empty()) throw;
     fail(scene, pointer, error.message);
   }
 }
 
-std::string text_of(const double* p) {
-  char text[100];
-  std::snprintf(text, sizeof text, "(%g, %g, %g)", p[0], p[1], p[2]);
-  return text;
-}
-
 std::string cannot_normalise(const double* point) {
-  return "fractions cannot be normalised at " + text_of(point) +
+  return "fractions cannot be normalised at " + short_point(point) +
          ": the sum of the formulas is not positive there";
 }
 
@@ -223,7 +218,7 @@ Scene::Scene(SceneDescription description, const Progress& progress)
   check_sums(scene, solid(), fractions_, bounds_);
   unproven_ = located(scene, "/fractions", [&] {
     return check_functions({"the fractions", scene.fractions, lowering_of_fractions(*this)},
-                           checked_place(), progress);
+                           checked_place(), scene.source, progress);
   });
   lower_attributes();
   std::vector<Expression> outputs = fractions_;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,6 +12,7 @@
 #include "sardf/fractions.hpp"
 #include "sardf/progress.hpp"
 #include "sardf/scene_checks.hpp"
+#include "sardf/scene_source.hpp"
 
 namespace sardf {
 
@@ -65,12 +65,6 @@ struct NamedField {
 /// How the picture is framed; see camera.hpp.
 struct Framing {
   Vec3 direction{0.5, -0.78, 0.42};  // from the object towards the camera
-};
-
-/// The file a scene was read from and the lines of its main parts, by JSON pointer; else empty.
-struct SceneSource {
-  std::string file;
-  std::map<std::string, int> lines;
 };
 
 /// What the user states. Make it ready with Scene(description).

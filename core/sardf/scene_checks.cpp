@@ -20,11 +20,6 @@ constexpr double sum_error = 1e-9;
 constexpr size_t samples_per_axis = 24;
 constexpr int most_boxes = 3000;
 
-std::string text_of(const Vec3& p) {
-  return "(" + short_number(p[0], 6) + ", " + short_number(p[1], 6) + ", " + short_number(p[2], 6) +
-         ")";
-}
-
 void report(const Progress& progress, double share) {
   if (progress && !progress(share)) throw Cancelled();
 }
@@ -43,8 +38,39 @@ std::vector<double> grid(const BoundingBox& box) {
   return points;
 }
 
+// A rule `functions`: what each material's function is, and where errors are.
+struct Functions {
+  std::vector<std::string> materials;
+  std::vector<Expression> all;
+  std::string owner;
+  RulePointer rule;
+  const SceneSource& source;
+
+  /// `blamed`: a material's place, or that of no one function.
+  [[noreturn]] void fail(std::optional<size_t> blamed, const std::string& message) const {
+    throw source.error_in(rule, blamed ? materials[*blamed] : "", owner + ": " + message);
+  }
+};
+
+// The only function, or the only one that is no finite number at the point.
+std::optional<size_t> to_blame(const Functions& functions, const double* point) {
+  const size_t n = functions.all.size();
+  if (n == 1) return 0;
+  std::vector<double> values(n);
+  Evaluator(functions.all).values(point, 1, values.data());
+  std::optional<size_t> found;
+  for (size_t i = 0; i < n; ++i) {
+    if (std::isfinite(values[i])) continue;
+    if (found) return std::nullopt;
+    found = i;
+  }
+  return found;
+}
+
 // Throws unless the sum is proven to be 1.
-void check_sum(const Expression& sum, const CheckedPlace& place, const std::string& owner) {
+void check_sum(const Functions& functions, const CheckedPlace& place) {
+  Expression sum = constant(0);
+  for (const Expression& e : functions.all) sum = sum + e;
   const std::optional<double> proven = proven_constant(sum);
   if (proven && std::abs(*proven - 1) <= 1e-12) return;
   const std::vector<double> points = grid(place.box);
@@ -60,12 +86,14 @@ void check_sum(const Expression& sum, const CheckedPlace& place, const std::stri
   }
   if (off(worst) > sum_error) {
     const double* p = &points[3 * worst];
-    throw Error(owner + ": the functions sum to " + short_number(values[worst], 9) + " at " +
-                text_of({p[0], p[1], p[2]}) + "; they must sum to 1 everywhere");
+    functions.fail(to_blame(functions, p), "the functions sum to " +
+                                               short_number(values[worst], 9) + " at " +
+                                               short_point(p) + "; they must sum to 1 everywhere");
   }
-  throw Error(owner +
-              ": that the functions sum to 1 cannot be proven; write the word \"rest\" in place of "
-              "one, which is 1 minus the others");
+  functions.fail(
+      std::nullopt,
+      "that the functions sum to 1 cannot be proven; write the word \"rest\" in place of "
+      "one, which is 1 minus the others");
 }
 
 // One function of a rule over the solid: proven bounds by halving the boxes with the worst ones.
@@ -145,20 +173,21 @@ class RangeProof {
   Interval proven_{0, 1};
 };
 
-std::optional<Warning> check_range(const std::string& material, const Expression& function,
-                                   const PlacedRule& placed, const CheckedPlace& place,
-                                   const std::string& owner, const Progress& progress) {
-  RangeProof proof(function, placed.share, place);
+std::optional<Warning> check_range(const Functions& functions, size_t which,
+                                   const Expression& share, const CheckedPlace& place,
+                                   const Progress& progress) {
+  const std::string named = "the function of '" + functions.materials[which] + "' is ";
+  RangeProof proof(functions.all[which], share, place);
   proof.run(progress);
   if (const auto found = proof.found()) {
-    throw Error(owner + ": the function of '" + material + "' is " +
-                short_number(found->second, 6) + " at " + text_of(found->first) +
-                ", in the solid; a fraction lies in [0, 1]");
+    functions.fail(which, named + short_number(found->second, 6) + " at " +
+                              short_point(found->first.data()) +
+                              ", in the solid; a fraction lies in [0, 1]");
   }
   const Interval proven = proof.proven();
   if (proven.lo >= 0 && proven.hi <= 1) return std::nullopt;
-  return Warning{owner + ": the function of '" + material +
-                 "' is not proven to lie in [0, 1] in the solid, but only in [" +
+  return Warning{functions.owner + ": " + named +
+                 "not proven to lie in [0, 1] in the solid, but only in [" +
                  short_number(proven.lo, 3) + ", " + short_number(proven.hi, 3) +
                  "]; where it does not, it is cut off"};
 }
@@ -167,28 +196,26 @@ std::vector<Expression> joined(const CheckedPlace& place, const std::vector<Expr
   return place.blend ? joined_by(*place.blend, all) : all;
 }
 
-void check_one(const PlacedRule& placed, const CheckedPlace& place, const std::string& owner,
-               const Progress& progress, std::vector<Warning>& warnings) {
-  const auto& functions = std::get<MaterialFunctions>(placed.rule.rule().arguments[0]);
-  std::vector<Expression> all;
-  Expression given = constant(0);
+// `share`: of the rule, joined as the scene says.
+void check_one(const Fractions& rule, const Expression& share, const CheckedPlace& place,
+               const std::string& owner, const SceneSource& source, const Progress& progress,
+               std::vector<Warning>& warnings) {
+  const auto& given = std::get<MaterialFunctions>(rule.rule().arguments[0]);
+  Functions functions{{}, {}, owner, rule.pointer(), source};
+  Expression sum = constant(0);
   bool has_rest = false;
-  for (const auto& [material, field] : functions) {
+  for (const auto& [material, field] : given) {
     has_rest = has_rest || !field;
-    if (field) given = given + field.expression();
+    if (field) sum = sum + field.expression();
   }
-  for (const auto& [material, field] : functions) {
-    all.push_back(field ? field.expression() : constant(1) - given);
+  for (const auto& [material, field] : given) {
+    functions.materials.push_back(material);
+    functions.all.push_back(field ? field.expression() : constant(1) - sum);
   }
-  all = joined(place, all);
-  if (!has_rest) {
-    // Joined together with the parts, so that both stay the same expressions.
-    Expression sum = constant(0);
-    for (const Expression& e : all) sum = sum + e;
-    check_sum(sum, place, owner);
-  }
-  for (size_t i = 0; i < functions.size(); ++i) {
-    const auto warning = check_range(functions[i].first, all[i], placed, place, owner, progress);
+  functions.all = joined(place, functions.all);
+  if (!has_rest) check_sum(functions, place);
+  for (size_t i = 0; i < given.size(); ++i) {
+    const auto warning = check_range(functions, i, share, place, progress);
     if (warning) warnings.push_back(*warning);
   }
 }
@@ -218,12 +245,12 @@ std::vector<PlacedRule> placed_rules(const Fractions& rule, double diagonal) {
 }
 
 std::vector<Warning> check_functions(const CheckedRule& checked, const CheckedPlace& place,
-                                     const Progress& progress) {
+                                     const SceneSource& source, const Progress& progress) {
   std::vector<Warning> warnings;
   if (!uses_rule(checked.rule, FractionFunctions::name)) return warnings;
   for (const PlacedRule& placed : placed_rules(checked.rule, checked.lowering.diagonal)) {
     if (placed.rule.rule().type->name != FractionFunctions::name) continue;
-    check_one({placed.rule, joined(place, {placed.share})[0]}, place, checked.owner, progress,
+    check_one(placed.rule, joined(place, {placed.share})[0], place, checked.owner, source, progress,
               warnings);
   }
   return warnings;

@@ -7,6 +7,7 @@
 
 #include "sardf/evaluate.hpp"
 #include "sardf/fractions.hpp"
+#include "sardf/scene_source.hpp"
 
 namespace sardf {
 
@@ -41,9 +42,10 @@ std::vector<PlacedRule> placed_rules(const Fractions& rule, double diagonal);
 
 /// Checks each rule `functions`: their sum is proven to be 1, or it is an Error that says where it
 /// is not. A function that is found outside of [0, 1] in the solid is an Error, too; one that
-/// cannot be proven to lie in it, to 1e-6, is a warning with the range that is proven.
+/// cannot be proven to lie in it, to 1e-6, is a warning with the range that is proven. Errors name
+/// the place that `source` knows of the rule, or of the one function that is to blame.
 std::vector<Warning> check_functions(const CheckedRule& checked, const CheckedPlace& place,
-                                     const Progress& progress = {});
+                                     const SceneSource& source, const Progress& progress = {});
 
 /// Two features of a rule that touch, within 1e-9 of the scene's diagonal, at a point of the solid
 /// at which they prescribe different values: there the mean of both counts.

@@ -227,11 +227,9 @@ std::vector<Contradiction> find_contradictions(const CheckedRule& checked,
 }
 
 Warning warning_of(const Contradiction& found, const std::vector<std::string>& names) {
-  const Vec3& p = found.point;
   return {found.owner + ": features " + std::to_string(found.first + 1) + " and " +
-          std::to_string(found.second + 1) + " touch at (" + short_number(p[0], 4) + ", " +
-          short_number(p[1], 4) + ", " + short_number(p[2], 4) +
-          "), where they prescribe different values (" + list_of(found.first_values, names) +
+          std::to_string(found.second + 1) + " touch at " + short_point(found.point.data(), 4) +
+          ", where they prescribe different values (" + list_of(found.first_values, names) +
           " and " + list_of(found.second_values, names) + "); their mean counts there"};
 }
 

@@ -89,6 +89,15 @@ class SceneReader : private RuleReader {
     return place;
   }
 
+  void rule_was_read(const RulePointer& rule, const JsonPlace& place) override {
+    SceneSource& source = scene_.source;
+    source.rules[rule] = place.pointer;
+    source.lines[place.pointer] = place.value->line;
+    for (const JsonMember& member : place.value->members) {
+      source.lines[place.member(member).pointer] = member.value.line;
+    }
+  }
+
   void read_version(const JsonPlace& top) {
     const auto at = top.find("sardf");
     if (!at) {

@@ -125,8 +125,10 @@ Fractions RuleReader::rule(const JsonPlace& place, Wanted wanted) {
     values = rule_values(inside, type->name, type->parameters, wanted);
   }
   if (!values) return {};
-  return guarded(inside, [&] { return make_fractions(type->name, std::move(*values)); })
-      .value_or(Fractions());
+  const auto made = guarded(inside, [&] { return make_fractions(type->name, std::move(*values)); });
+  if (!made) return {};
+  rule_was_read(made->pointer(), inside);
+  return *made;
 }
 
 // Null, with an error at its key, where there is none of the name or none that may stand here.

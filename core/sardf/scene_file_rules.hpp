@@ -26,6 +26,8 @@ class RuleReader : public FieldReader {
 
  protected:
   RulePointer value_rule(const JsonPlace& place) override;
+  /// Called for each rule that was read, with the place of its value.
+  virtual void rule_was_read(const RulePointer&, const JsonPlace&) {}
 
  private:
   // What a rule is read for: shape is nullptr where it gives fractions.

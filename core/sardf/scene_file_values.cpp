@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "sardf/formula.hpp"
+#include "sardf/short_number.hpp"
 
 namespace sardf {
 
@@ -13,14 +14,12 @@ namespace {
 using Type = JsonValue::Type;
 
 std::string found(const JsonValue& value) {
-  char number[40];
   switch (value.type) {
     case Type::string:
       return "the string \"" +
              (value.text.size() > 40 ? value.text.substr(0, 40) + "..." : value.text) + "\"";
     case Type::number:
-      std::snprintf(number, sizeof number, "the number %g", value.number);
-      return number;
+      return "the number " + short_number(value.number, 6);
     case Type::array:
       return "a list of " + std::to_string(value.elements.size());
     default:
@@ -205,9 +204,8 @@ std::optional<Vec3> ValueReader::color(const JsonPlace& place, double largest) {
   if (!color) return std::nullopt;
   for (const double c : *color) {
     if (c >= 0 && c <= largest) continue;
-    char range[60];
-    std::snprintf(range, sizeof range, "a component is %g; 0 to %g is accepted", c, largest);
-    error(place, range);
+    error(place, "a component is " + short_number(c, 6) + "; 0 to " + short_number(largest, 6) +
+                     " is accepted");
     return std::nullopt;
   }
   return color;

@@ -5,6 +5,7 @@
 #include "sardf/arithmetic.hpp"
 #include "sardf/derivative.hpp"
 #include "sardf/formula.hpp"
+#include "sardf/short_number.hpp"
 #include "sardf/symbol.hpp"
 #include "sardf/taylor_series.hpp"
 
@@ -74,9 +75,7 @@ Expression Taylor::expression() const {
   constexpr double most = 32;
   const double last = first_term + terms - 1;
   if (last > most) {
-    char text[80];
-    std::snprintf(text, sizeof text, "the last term is number %g; at most 32 are accepted", last);
-    throw Error(text);
+    throw Error("the last term is number " + short_number(last, 6) + "; at most 32 are accepted");
   }
   const std::vector<double> series = taylor_coefficients(formula, int(last));
   std::vector<Symbol> factors;

@@ -99,7 +99,8 @@ TEST(FractionFunctions, TakeTheRest) {
 TEST(FractionFunctions, MustSumToOne) {
   const std::string wrong = problem(functions("\"=0.2 + 0.3*x\"", "\"=0.8 - 0.2*x\""));
   // Largest where the grid's samples are farthest from x = 0: 1 + 0.1 * 23/24.
-  EXPECT_THAT(wrong, AllOf(HasSubstr("t.json:4: /fractions: the fractions: the functions sum to "),
+  EXPECT_THAT(wrong, AllOf(HasSubstr("t.json:4: /fractions/functions: the fractions: the functions "
+                                     "sum to "),
                            HasSubstr("at ("), HasSubstr("they must sum to 1 everywhere")));
   EXPECT_THAT(problem(functions("\"=cos(x)^2\"", "\"=sin(x)^2\"")),
               HasSubstr("cannot be proven; write the word \"rest\""));
@@ -118,7 +119,8 @@ TEST(FractionFunctions, NameThePlaceWhereTheSumIsWrong) {
 
 TEST(FractionFunctions, MustLieBetweenZeroAndOneInTheSolid) {
   const std::string text = problem(functions("\"=0.5 + 0.7*x\"", "\"=0.5 - 0.7*x\""));
-  EXPECT_THAT(text, HasSubstr("t.json:4: /fractions: the fractions: the function of 'SiC' is "));
+  EXPECT_THAT(text, HasSubstr("t.json:4: /fractions/functions/SiC: the fractions: the function of "
+                              "'SiC' is "));
   double value, x;
   ASSERT_EQ(std::sscanf(text.c_str() + text.find("'SiC' is "), "'SiC' is %lf at (%lf,", &value, &x),
             2);
@@ -126,6 +128,39 @@ TEST(FractionFunctions, MustLieBetweenZeroAndOneInTheSolid) {
   EXPECT_TRUE(value < 0 || value > 1);
   // Outside of the solid they may be anything.
   EXPECT_EQ(problem(functions("\"=0.5 + 0.49*x\"", "\"=0.5 - 0.49*x\"")), "no error");
+}
+
+// Of several lines and rules, errors name the one function that is wrong.
+TEST(FractionFunctions, AreNamedByErrorsWithTheirLines) {
+  const std::string below_zero = problem(
+      "{\"functions\": {\n\"SiC\": \"=2 + x\",\n\"diamond\":\n"
+      "\"rest\"}}");
+  EXPECT_THAT(below_zero, HasSubstr("t.json:5: /fractions/functions/SiC: the fractions: the "
+                                    "function of 'SiC' is "));
+  const std::string rest = problem(
+      "{\"functions\": {\n\"SiC\": \"=0.5 + 0*x\",\n\"diamond\": "
+      "\"=0.5 - 0*x\"}}");
+  EXPECT_EQ(rest, "no error");
+  // Neither function alone is wrong where the sum is.
+  EXPECT_THAT(problem("{\"functions\":\n{\n\"SiC\": 0.5,\n\"diamond\": 0.4}}"),
+              HasSubstr("t.json:5: /fractions/functions: the fractions: the functions sum to 0.9"));
+  // Where there is one, or one that is no number, it is.
+  EXPECT_THAT(
+      problem("{\"functions\": {\n\n\"SiC\": 0.5}}"),
+      HasSubstr("t.json:6: /fractions/functions/SiC: the fractions: the functions sum to "));
+  EXPECT_THAT(problem("{\"functions\": {\n\"SiC\": 0.5,\n\"diamond\": \"=log(-1 - x^2)\"}}"),
+              HasSubstr("t.json:6: /fractions/functions/diamond: the fractions: the functions sum "
+                        "to "));
+}
+
+TEST(FractionFunctions, AreNamedByErrorsInsideOtherRules) {
+  const std::string outer = R"({"partition": {"of": [{"solid": {"sphere": {"radius": 0.5}},
+      "material": "SiC"}, {"solid": {"box": {"size": [4, 4, 4]}}, "fractions":
+      {"functions": {
+        "SiC": "=0.5 - x",
+        "diamond": "rest"}}}]}})";
+  EXPECT_THAT(problem(outer), HasSubstr("t.json:7: /fractions/partition/of/1/fractions/functions/"
+                                        "SiC: the fractions: the function of 'SiC' is "));
 }
 
 // It is 0 on all of the surface, which no interval across the surface proves.

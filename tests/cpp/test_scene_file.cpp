@@ -32,26 +32,33 @@ std::string problem(const std::string& text) {
   return "";
 }
 
-// A scene that says everything a scene can say.
+// A scene that says everything a scene can say; test_scene_words.cpp sees to that.
+const std::string everything_path = std::string(SARDF_SOURCE_DIR) + "/tests/scenes/everything.json";
+
 const std::string& everything() {
   static const std::string text = [] {
     std::stringstream read;
-    read << std::ifstream(std::string(SARDF_SOURCE_DIR) + "/tests/scenes/everything.json").rdbuf();
+    read << std::ifstream(everything_path).rdbuf();
     return read.str();
   }();
   return text;
 }
 
+// As from that folder, in which a mesh lies.
+SceneDescription parse_everything(const std::string& text) {
+  return parse_scene(text, everything_path);
+}
+
 TEST(SceneFile, IsRead) {
-  const SceneDescription s = parse(everything());
+  const SceneDescription s = parse_everything(everything());
   EXPECT_EQ(s.title, "all \"words\"");
   EXPECT_EQ(s.comment, "two\nlines");
   EXPECT_EQ(s.units, "cm");
   EXPECT_THAT(s.parameters, ElementsAre(std::pair{"R", 0.5}, std::pair{"twice", 1.0}));
-  ASSERT_EQ(s.fields.size(), 14u);
+  ASSERT_EQ(s.fields.size(), 43u);
   EXPECT_EQ(s.fields[0].name, "part");
   EXPECT_EQ(s.fields[7].field.construction(), s.fields[0].field.construction());
-  const Field block = make_field("rounded_box", {Vec3{}, Vec3{20, 12, 8}, 1.0});
+  const Field block = make_field("rounded_box", {Vec3{0, 0, 1}, Vec3{20, 12, 8}, 1.0});
   const Field bore = make_field("cylinder", {Vec3{}, Vec3{1, 0, 0}, 3.0, Value()});
   const Field part =
       make_field("difference", {std::vector<Field>{block, bore}, make_blend("sardf", {0.5})});
@@ -68,7 +75,7 @@ TEST(SceneFile, IsRead) {
   EXPECT_EQ(s.stated_bounds->hi, (Vec3{50, 50, 50}));
   EXPECT_EQ(s.stated_lipschitz, 3);
   EXPECT_EQ(s.view.direction, (Vec3{1, 1, 1}));
-  EXPECT_EQ(s.source.lines.at("/solid"), 26);
+  EXPECT_EQ(s.source.lines.at("/solid"), 71);
 }
 
 // Equal expressions are one node, so equal pointers mean equal scenes.
@@ -101,12 +108,13 @@ void expect_same(const SceneDescription& a, const SceneDescription& b) {
   ASSERT_EQ(a.attributes.size(), b.attributes.size());
   for (size_t i = 0; i < a.attributes.size(); ++i) {
     const Attribute &m = a.attributes[i], &n = b.attributes[i];
-    EXPECT_EQ(std::tie(m.name, m.unit, m.rule_components),
-              std::tie(n.name, n.unit, n.rule_components));
+    EXPECT_EQ(
+        std::tie(m.name, m.unit, m.rule_components, m.component_names, m.unit_vector, m.fallback),
+        std::tie(n.name, n.unit, n.rule_components, n.component_names, n.unit_vector, n.fallback));
     ASSERT_EQ(bool(m.rule), bool(n.rule));
     if (m.rule) {
       const std::vector<Expression> thirds(names.size(), constant(0.5));
-      const Lowering lowering{names, 2, m.rule_components, thirds};
+      const Lowering lowering{names, 2, m.rule_components, thirds, m.component_names};
       EXPECT_EQ(lower(m.rule, lowering), lower(n.rule, lowering));
       continue;
     }
@@ -126,9 +134,9 @@ void expect_same(const SceneDescription& a, const SceneDescription& b) {
 }
 
 TEST(SceneFile, IsWrittenAndReadBack) {
-  const SceneDescription first = parse(everything());
+  const SceneDescription first = parse_everything(everything());
   const std::string text = scene_text(first);
-  const SceneDescription second = parse(text);
+  const SceneDescription second = parse_everything(text);
   expect_same(first, second);
   EXPECT_EQ(scene_text(second), text);
   EXPECT_THAT(text, HasSubstr("\"color\": \"#8a8f98\""));
@@ -235,7 +243,7 @@ class SceneFolder : public testing::Test {
 
 TEST_F(SceneFolder, HoldsWrittenScenes) {
   const std::string path = folder_ / "part.json";
-  const SceneDescription scene = parse(everything());
+  const SceneDescription scene = parse_everything(everything());
   write_scene(path, scene);
   expect_same(scene, read_scene(path));
   EXPECT_EQ(read_scene(path).source.file, path);

@@ -205,9 +205,10 @@ def test_command(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["--field", "lwo"], "no field 'lwo'; accepted are low, high, step"),
-        (["--blend", "sardf"], "as in sardf=0.5"),
-        (["--blend", "sardf=a"], "'a' is no number"),
+        (["--field", "lwo"], "no field 'lwo'; accepted are low, high, step; did you mean 'low'?"),
+        (["--blend", "sardf"], "'sardf=NUMBER' is accepted"),
+        (["--blend", "sarf=1"], "did you mean 'sardf'?"),
+        (["--blend", "sardf=a"], "blend's radius is 'a'; a finite number is accepted"),
         (["--section", "w=3"], "as in y=0"),
         (["-o", "table.txt"], ".json, .csv, .png, .svg and .pdf can be written"),
     ],

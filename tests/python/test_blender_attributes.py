@@ -178,9 +178,9 @@ def test_the_convention_is_a_vector_of_that_name(job):
         ({}, ""),
     ):
         scene = sardf.Scene(solid=sardf.sphere(radius=1), attributes=attributes)
-        assert job.tangent_of(sardf, scene, "") == wanted
+        assert job.tangent_of(scene, "") == wanted
     with pytest.raises(sardf.Error, match="the scene has none"):
-        job.tangent_of(sardf, SimpleNamespace(attributes={}), "along")
+        job.tangent_of(SimpleNamespace(attributes={}), "along")
 
 
 def test_vector_attributes_are_baked(tmp_path):

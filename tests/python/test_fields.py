@@ -73,6 +73,27 @@ def test_exactness_labels():
     assert sardf.extrude(sardf.disc(radius=1), 2).exactness == ("exact", "exact")
 
 
+def test_what_is_a_distance():
+    a, b = sardf.sphere(radius=1), sardf.box(size=(1, 1, 1))
+    implicit = sardf.formula("1 - x^2")
+    corners = [(0, 0), (2, 0), (0, 2)]
+    distances = (
+        a, sardf.union(a, b, blend=sardf.Sardf(0.5)), sardf.shell(a - b, 0.1), sardf.boundary(b),
+        sardf.point(at=(1, 2, 3)), sardf.trimmed_segment(a=(0, 0, 0), b=(1, 0, 0)),
+        sardf.polygon(corners), sardf.extrude(sardf.polygon(corners), 2),
+        sardf.normalized(implicit), sardf.at(a, point=[sardf.x, sardf.y, 0]),
+        sardf.boundary(b, where=sardf.z), sardf.with_blend(a | b, blend=sardf.Smooth(0.1)),
+    )  # fmt: skip
+    others = (
+        sardf.x, implicit, a * 2, sardf.union(a, implicit), sardf.translate(implicit, by=(1, 0, 0)),
+        sardf.boundary(implicit), sardf.implicit_polygon(corners), sardf.blend_error(a | b),
+        sardf.quadric(matrix=[(-1, 0, 0), (0, -1, 0), (0, 0, -1)]), sardf.gradient_length(a),
+        sardf.loft([(sardf.disc(radius=1), 0), (sardf.disc(radius=2), 1)]),
+    )  # fmt: skip
+    assert [field.is_distance for field in distances] == [True] * len(distances)
+    assert [field.is_distance for field in others] == [False] * len(others)
+
+
 def test_blend_block_sets_the_operators():
     a, b = sardf.box(size=(2, 2, 2)), sardf.sphere(radius=0.8)
     with sardf.blend(sardf=0.5):

@@ -82,7 +82,28 @@ def test_rows_are_quantities_and_columns_blends(ellipsoids):
     figure = plot.draw_sections(cut)
     places = [axes.get_subplotspec().rowspan.start for axes in panels_of(figure)]
     assert places == [0, 0, 1, 1, 2, 2]
-    assert [bar.get_ylabel() for bar in bars_of(figure)] == ["field (mm)", "volume fraction"]
+    assert [bar.get_ylabel() for bar in bars_of(figure)] == ["distance (mm)", "volume fraction"]
+
+
+def test_only_distances_have_the_unit_of_length():
+    fields = {"ball": {"sphere": {"radius": 2}}, "heat": "=exp(-x^2)"}
+    text = json.dumps({"sardf": 1, "units": "cm", "fields": fields, "solid": "ball"})
+    scene = sardf.Scene.from_json(text)
+    values = plot.quantities(scene, ["solid", "ball", "heat", "=x*y"])
+    assert [quantity.label for quantity in values] == [
+        "distance (cm)", "distance (cm)", "heat", "=x*y",
+    ]  # fmt: skip
+    errors = plot.quantities(scene, ["ball", "heat"], show="error")
+    assert [quantity.label for quantity in errors] == [
+        "error against min/max (cm)",
+        "error against min/max",
+    ]
+    cut = plot.section(scene, "z=0", fields=["heat", "ball"], resolution=20)
+    figure = plot.draw_sections(cut, separate_scales=True, lines=0.5)
+    assert [bar.get_ylabel() for bar in bars_of(figure)] == ["heat", "distance (cm)"]
+    along = plot.segment(scene, (0, 0, 0), (1, 0, 0), fields=["heat", "ball"])
+    graphs = plot.draw_segment(along, separate_scales=True).axes
+    assert [axes.get_ylabel() for axes in graphs] == ["heat", "ball\ndistance (cm)"]
 
 
 def test_contour_lines_and_bands_stand_where_asked(ball):

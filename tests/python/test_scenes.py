@@ -25,6 +25,7 @@ EULER = {
     "cad_plate_stripes": 2,
     "diamond_cutter": 2,
     "exponents": 2,
+    "forged_lever": 0,
     "hardened_gear": 0,
     "lined_bore": -4,
     "s_and_ring": 2,
@@ -301,6 +302,36 @@ def test_a_section_is_one_more_cut():
     np.testing.assert_array_equal(cut.drawn(points) >= 0, inside)
     np.testing.assert_array_equal(cut.solid(points), loaded.solid(points))
     np.testing.assert_array_equal(cut.fractions(points), loaded.fractions(points))
+
+
+def test_the_grain_of_the_forged_lever():
+    """Unit vectors in the plane: along the arm, round the eye without running into the seat, and
+    circles in the bush."""
+    lever = sardf.load(str(ROOT / "scenes" / "forged_lever.json"))
+    eye, seat = np.array([35, 35.707]), 8.5
+    points = np.random.default_rng(11).uniform(*np.array(lever.bounds), (20000, 3))
+    points = points[lever.solid(points) >= 0]
+    grain = lever.attributes["grain_direction"](points)
+    np.testing.assert_allclose(np.linalg.norm(grain, axis=1), 1, rtol=0, atol=1e-9)
+    assert np.abs(grain[:, 2]).max() < 1e-9
+    offset = points[:, :2] - eye
+    radius = np.linalg.norm(offset, axis=1)
+    outwards = np.einsum("ij,ij->i", grain[:, :2], offset) / radius
+    assert np.abs(outwards[radius < seat]).max() < 1e-9
+    np.testing.assert_allclose(lever.fractions(points)[:, 1], radius < seat, rtol=0, atol=1e-9)
+    # On the middle of the arm, an arc of radius 50, the grain is its tangent.
+    angle = np.radians(np.linspace(75, 138, 40))
+    middle = np.stack([50 * np.cos(angle), 50 * np.sin(angle), 0 * angle], axis=1)
+    tangent = np.stack([-np.sin(angle), np.cos(angle), 0 * angle], axis=1)
+    found = lever.attributes["grain_direction"](middle)
+    np.testing.assert_allclose(found, tangent, rtol=0, atol=1e-9)
+    # Just outside of the seat it runs along the seat, the same way on both sides.
+    for side in (-1, 1):
+        across = side * eye / np.linalg.norm(eye)
+        place = np.append(eye + (seat + 1e-3) * across, 0)[None]
+        found = lever.attributes["grain_direction"](place)[0, :2]
+        expected = np.array([-eye[1], eye[0]]) / np.linalg.norm(eye)
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-3)
 
 
 def test_progress_rises_and_cancels():

@@ -7,6 +7,7 @@ import sys
 
 import sardf
 from sardf import _command
+from sardf._words import blend_from, choose, fail
 from sardf.accuracy import measure, measure_section
 from sardf.accuracy._map import write_map
 
@@ -46,26 +47,11 @@ def chosen(options):
     """The scene with the chosen blend, or the scene of the chosen field."""
     scene = sardf.load(options.scene)
     if options.blend:
-        name, _, value = options.blend.partition("=")
-        try:
-            parameter = float(value) if value else True
-        except ValueError:
-            wrong(f"--blend {options.blend}: '{value}' is no number")
-        if parameter is True and name not in ("min_max", "r_function"):
-            wrong(f"--blend {options.blend}: a name, = and a number are accepted, as in sardf=0.5")
-        with sardf.blend(**{name: parameter}) as blend:
-            scene = scene.with_blend(blend)
+        scene = scene.with_blend(blend_from(options.blend))
     if options.field is None:
         return scene
-    if options.field not in scene.fields:
-        accepted = ", ".join(scene.fields)
-        wrong(f"the scene has no field '{options.field}'; accepted are {accepted}")
-    field = scene.fields[options.field]
+    field = choose("field", options.field, scene.fields)
     return sardf.Scene(solid=field, units=scene.units, title=options.field)
-
-
-def wrong(message):
-    raise _command.located_error(message)
 
 
 def section_of(text):
@@ -73,15 +59,15 @@ def section_of(text):
     try:
         return found[1], float(found[2])
     except (TypeError, ValueError):
-        wrong(f"--section {text}: an axis, = and a number are accepted, as in y=0")
+        fail(f"--section {text}: an axis, = and a number are accepted, as in y=0")
 
 
 def run(options):
     ending = (options.output or ".json").rpartition(".")[2]
     if ending not in ("json", "csv", *PICTURES):
-        wrong(f"{options.output}: .json, .csv, .png, .svg and .pdf can be written")
+        fail(f"{options.output}: .json, .csv, .png, .svg and .pdf can be written")
     if ending in PICTURES and not options.section:
-        wrong(f"{options.output}: a map needs a plane, such as --section y=0")
+        fail(f"{options.output}: a map needs a plane, such as --section y=0")
     given = {"resolution": options.resolution}
     if options.bounds:
         given["bounds"] = (options.bounds[:3], options.bounds[3:])

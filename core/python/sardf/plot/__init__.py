@@ -21,7 +21,7 @@ except ModuleNotFoundError:
     raise ImportError("plots need matplotlib: pip install 'sardf[plot]'", name=__name__) from None
 
 from sardf._command import Failure
-from sardf.plot.blends import blend_from
+from sardf._words import blend_from
 from sardf.plot.look import Look
 from sardf.plot.output import save, write_csv
 from sardf.plot.planes import Plane, plane

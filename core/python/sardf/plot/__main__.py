@@ -4,9 +4,9 @@ import sys
 
 import sardf
 from sardf import _command, plot
+from sardf._words import fail
 from sardf.plot.arguments import parse
 from sardf.plot.look import Look, bands_from, lines_from
-from sardf.plot.names import fail
 from sardf.plot.output import format_of
 
 

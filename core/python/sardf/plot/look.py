@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import matplotlib
 
-from sardf.plot.names import choose, fail
-from sardf.plot.numbers import brief, number, numbers
+from sardf._words import choose, fail, number
+from sardf.plot.numbers import brief, numbers
 
 NONE = "none"
 EQUAL, SCALED = "equal", "scaled"

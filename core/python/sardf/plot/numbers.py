@@ -1,21 +1,8 @@
 """Numbers in the words of a user: points, windows, steps."""
 
-import math
-
 import numpy as np
 
-from sardf.plot.names import fail
-
-
-def number(text, what: str) -> float:
-    """A finite number; Error otherwise."""
-    try:
-        value = float(text)
-    except (TypeError, ValueError):
-        value = math.nan
-    if not math.isfinite(value):
-        fail(f"the {what} is '{text}'; a finite number is accepted")
-    return value
+from sardf._words import fail
 
 
 def numbers(text, count: int, what: str, example: str) -> np.ndarray:

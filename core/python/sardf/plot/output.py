@@ -5,8 +5,8 @@ import sys
 from pathlib import Path
 
 from sardf._command import completed
+from sardf._words import choose, fail
 from sardf.plot import parts
-from sardf.plot.names import choose, fail
 
 FIGURES = ("png", "svg", "pdf")
 FORMATS = (*FIGURES, "csv")

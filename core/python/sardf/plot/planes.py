@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sardf.plot.names import fail
-from sardf.plot.numbers import brief, number, point, triple
+from sardf._words import fail, number
+from sardf.plot.numbers import brief, point, triple
 
 AXES = "xyz"
 # What is drawn to the right and upwards where a section is perpendicular to an axis.

@@ -7,9 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 import sardf
-from sardf.plot.blends import variants
+from sardf._words import choose, components_of, fail, variants
 from sardf.plot.colors import linear_from
-from sardf.plot.names import choose, fail
 
 SHOWN = ("value", "gradient", "error")
 
@@ -64,7 +63,7 @@ class Variant:
         return ", ".join(filter(None, (name, self.title)))
 
     def field_of(self, text):
-        """The Field of a name, "solid", a formula "=..." or a Field, and whether it has a unit."""
+        """The Field of a name, "solid", a formula "=..." or a Field."""
         if isinstance(text, sardf.Field):
             return text
         if text.startswith("="):
@@ -74,8 +73,7 @@ class Variant:
     def quantity_of_field(self, text, show: str) -> Quantity:
         source, scene = self.field_of(text), self.scene
         name = text if isinstance(text, str) else "field"
-        formula = name.startswith("=")
-        unit = "" if formula else f" ({scene.units})"
+        unit = f" ({scene.units})" if source.is_distance else ""
         if show == "gradient":
             slope = _slope(source)
             label = "length of the gradient"
@@ -86,9 +84,8 @@ class Variant:
             return Quantity(
                 self.named(f"error of {name}"), show, label, error, (show,), scene, source
             )
-        return Quantity(
-            self.named(name), "field", f"field{unit}", source, ("field",), scene, source
-        )
+        label = f"distance{unit}" if source.is_distance else name
+        return Quantity(self.named(name), "field", label, source, ("field",), scene, source)
 
     def quantity_of_fraction(self, material: str) -> Quantity:
         scene = self.scene
@@ -101,19 +98,18 @@ class Variant:
     def quantities_of_attribute(self, name: str) -> list[Quantity]:
         """One quantity for a number, one for each component of a vector."""
         evaluate = choose("attribute", name, self.scene.attributes)
-        sample = evaluate(np.zeros((1, 3)))
+        components = components_of(evaluate)
         label = name + unit_of(self.scene, name)
-        if isinstance(sample, dict):
+        if isinstance(components, list):
             return [
                 Quantity(
                     self.named(f"{name}_{component}"), "attribute", label,
                     lambda points, component=component: evaluate(points)[component],
                     ("attribute", name), self.scene,
                 )
-                for component in sample
+                for component in components
             ]  # fmt: skip
-        shape = np.shape(sample)
-        if len(shape) == 1:
+        if components == 1:
             return [
                 Quantity(
                     self.named(name), "attribute", label, evaluate, ("attribute", name), self.scene
@@ -124,7 +120,7 @@ class Variant:
                 self.named(f"{name}_{'xyzw'[i % 4]}"), "attribute", label,
                 lambda points, i=i: evaluate(points)[:, i], ("attribute", name), self.scene,
             )
-            for i in range(shape[1])
+            for i in range(components)
         ]  # fmt: skip
 
     def colors(self) -> Quantity:

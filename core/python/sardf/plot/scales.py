@@ -8,8 +8,8 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap, Normalize, TwoSlopeNorm
 from matplotlib.ticker import MaxNLocator
 
+from sardf._words import fail
 from sardf.plot.look import NONE, Look
-from sardf.plot.names import fail
 
 MOST_LEVELS = 1000
 DARKER = 0.72  # every second stripe

@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from sardf._words import fail
 from sardf.plot import parts
 from sardf.plot.look import Look
-from sardf.plot.names import fail
 from sardf.plot.numbers import brief
 from sardf.plot.quantities import material_colors
 from sardf.plot.scales import scale_of

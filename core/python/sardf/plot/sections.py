@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sardf.plot.names import choose, fail
+from sardf._words import choose, fail
 from sardf.plot.numbers import numbers
 from sardf.plot.planes import Plane, plane
 from sardf.plot.quantities import Quantity, Variant, quantities

@@ -4,10 +4,10 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from sardf._words import fail
 from sardf.plot import parts
 from sardf.plot.colors import APART, DASHES
 from sardf.plot.look import Look
-from sardf.plot.names import fail
 from sardf.plot.numbers import triple
 from sardf.plot.section_figure import fill_panels, section_handles
 from sardf.plot.sections import Section
@@ -91,7 +91,8 @@ def _draw_graph(ax, position, segment: Segment, members) -> None:
             ncols=min(len(members), 4), handlelength=3,
         )  # fmt: skip
     else:
-        ax.set_ylabel(label if kind == "attribute" else f"{name}\n{label}")
+        own = name if name.startswith(label) else f"{name}\n{label}"
+        ax.set_ylabel(label if kind == "attribute" else own)
 
 
 def _draw_above(figure, ax, segment: Segment, section: Section, look: Look) -> list:

@@ -9,8 +9,8 @@ import numpy as np
 
 import sardf
 from sardf._command import Failure
-from sardf.plot.names import fail
-from sardf.plot.numbers import brief, number, point
+from sardf._words import fail, number
+from sardf.plot.numbers import brief, point
 from sardf.plot.quantities import Quantity, material_colors, quantities
 from sardf.plot.sections import table
 

@@ -7,10 +7,10 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 
+from sardf._words import fail
 from sardf.plot import parts
 from sardf.plot.colors import APART
 from sardf.plot.look import SCALED, Look
-from sardf.plot.names import fail
 from sardf.plot.numbers import brief
 from sardf.plot.vectors import FLAT, Vectors
 

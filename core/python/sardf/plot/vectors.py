@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sardf.plot.names import choose, fail
+from sardf._words import fail, vector_attribute
 from sardf.plot.planes import Plane
 from sardf.plot.quantities import unit_of
 
@@ -72,7 +72,7 @@ def vectors_in(scene, name: str, kind: str, plane: Plane, window, count: int, on
     """
     if not 1 <= count <= MOST:
         fail(f"the arrow count is {count}; 1 to {MOST} along the longer side are accepted")
-    evaluate = vector_attribute(scene, name)
+    evaluate = vector_attribute(scene, name, (2, 3), "arrows and streamlines show")
     step, across, up = _grid(window, int(count), FINER if kind == "streamlines" else 1)
     points = plane.points(*np.meshgrid(across, up))
     flat = np.ascontiguousarray(points.reshape(-1, 3))
@@ -89,22 +89,6 @@ def vectors_in(scene, name: str, kind: str, plane: Plane, window, count: int, on
     )  # fmt: skip
     _check_something_shown(made)
     return made
-
-
-def vector_attribute(scene, name: str):
-    """The function points (N, 3) -> (N, 2 or 3) of an attribute; Error where it is none."""
-    attributes = scene.attributes
-    evaluate = choose("attribute", name, attributes)
-    sample = evaluate(np.zeros((1, 3)))
-    shape = np.shape(sample)
-    count = shape[1] if len(shape) == 2 else 1
-    if count not in (2, 3):
-        found = "a number" if count == 1 else f"a vector of {count} components"
-        if isinstance(sample, dict):
-            found = f"made of the components {', '.join(sample)}"
-        fail(f"the attribute '{name}' is {found}; arrows and streamlines show a vector of 2 or 3 "
-             "components")  # fmt: skip
-    return evaluate
 
 
 def _grid(window, count: int, finer: int):

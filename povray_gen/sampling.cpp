@@ -24,10 +24,6 @@ OperationKey key_of(const Operation& operation) {
   return {operation.info().name, operation.numbers()};
 }
 
-bool is_sampled(const Node& node) {
-  return node.type == Node::Type::operation && !node.operation->has_formula();
-}
-
 /// All uses of one operation.
 struct Uses {
   OperationPointer operation;
@@ -114,6 +110,10 @@ std::vector<Expression> replaced(std::span<const Expression> roots,
 }
 
 }  // namespace
+
+bool is_sampled(const Node& node) {
+  return node.type == Node::Type::operation && !node.operation->has_formula();
+}
 
 Sampling sample_operations(std::span<const Expression> expressions, const BoundingBox& bounds,
                            const std::string& stem, const SamplingOptions& options) {

@@ -17,8 +17,13 @@ struct SamplingOptions {
   double error_share = 1.0 / 2000;
   /// For each function; 256³ samples are 64 MiB. The error aimed at may not be reached.
   double most_samples = 256.0 * 256 * 256;
+  /// Else fields are left out that need samples which the picture does not (scene_samples.hpp).
+  bool all_fields = true;
   Progress progress = {};
 };
+
+/// Whether the node has no formula.
+bool is_sampled(const Node& node);
 
 struct Sampling {
   std::vector<Expression> expressions;  ///< as given, with sampled functions in them

@@ -43,6 +43,10 @@ std::vector<std::string> write_files(const Scene& scene, const SceneFiles& files
   for (const NamedField& named : scene.fields()) {
     text.fields.push_back({named.name, named.field.expression()});
   }
+  const std::vector<std::string> materials = scene.material_names();
+  for (size_t i = 0; i < scene.fractions().size(); ++i) {
+    text.fractions.push_back({materials.at(i), scene.fractions()[i]});
+  }
   text.color = scene.base_color();
   text.camera = files.camera;
   text.width = files.width;
@@ -53,21 +57,20 @@ std::vector<std::string> write_files(const Scene& scene, const SceneFiles& files
   SamplingOptions sampling;
   sampling.progress = progress;
   sampling.most_samples = std::pow(files.samples, 3);
+  sampling.all_fields = files.all_fields;
   const SceneText made = scene_text(text, include.filename(), sampling);
   std::vector<std::unique_ptr<OutputFile>> written;
   const auto begin_file = [&](const fs::path& path) -> OutputFile& {
     written.push_back(std::make_unique<OutputFile>(path));
     return *written.back();
   };
-  std::vector<std::string> sentences;
   for (const SampledPointer& sampled : made.sampled) {
     sampled->samples().write_to(begin_file(include.parent_path() / sampled->file()), progress);
-    sentences.push_back(sampled->description());
   }
   begin_file(include).write(made.include);
   begin_file(files.path).write(made.scene);
   for (const auto& file : written) file->commit();
-  return sentences;
+  return made.sentences;
 }
 
 void render_files(const SceneFiles& files, const std::string& image, const Progress& progress,

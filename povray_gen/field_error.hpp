@@ -15,12 +15,11 @@ namespace sardf::povray {
 struct FieldError {
   /// A bound, but for the rounding of doubles; infinite where none is proven.
   double proven = infinity;
-  double range = infinity;  ///< the width of an interval that holds all exact and sampled values
-  double measured = 0;      ///< the largest at `points` random points; infinite: a value is NaN
+  double measured = 0;  ///< the largest at `points` random points; infinite: a value is NaN
   size_t points = 0;
-  /// No field is farther from the exact one than its values are from each other: only a smaller
-  /// bound says something.
-  bool says_something() const { return proven < range; }
+  double spread = 0;  ///< between the largest and the smallest exact value at these points
+  /// Only a bound says something that is less than what the values differ anyway.
+  bool says_something() const { return proven < spread; }
 };
 
 /// The errors of the sampled counterparts of exact expressions (sampling.hpp); 0 at 0 points for

@@ -31,9 +31,10 @@ struct Sampling {
 };
 
 /// Samples every operation without a formula that the expressions need, equal ones once, over all
-/// that its inputs can be within the bounds and 1/1000 of the diagonal around them. The density
-/// files are named STEM_sampled_1.df3, _2, ... Throws Error naming the operation where an input has
-/// no finite bounds or a value is not finite; Cancelled.
+/// that its inputs can be within the bounds and 1/1000 of the diagonal around them; of a spline on
+/// a box, no farther than the box. The density files are named STEM_sampled_1.df3, _2, ... Throws
+/// Error naming the operation where an input has no finite bounds or a value is not finite;
+/// Cancelled.
 Sampling sample_operations(std::span<const Expression> expressions, const BoundingBox& bounds,
                            const std::string& stem, const SamplingOptions& options);
 

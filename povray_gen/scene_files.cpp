@@ -3,9 +3,11 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <set>
 
 #include "povray_gen/run.hpp"
 #include "povray_gen/scene_text.hpp"
+#include "povray_gen/stale_files.hpp"
 #include "sardf/error.hpp"
 #include "sardf/output_file.hpp"
 
@@ -59,17 +61,25 @@ std::vector<std::string> write_files(const Scene& scene, const SceneFiles& files
   sampling.most_samples = std::pow(files.samples, 3);
   sampling.all_fields = files.all_fields;
   const SceneText made = scene_text(text, include.filename(), sampling);
+  const std::vector<std::string> earlier = density_files_of(include);
+  std::set<std::string> now;
   std::vector<std::unique_ptr<OutputFile>> written;
   const auto begin_file = [&](const fs::path& path) -> OutputFile& {
     written.push_back(std::make_unique<OutputFile>(path));
     return *written.back();
   };
   for (const SampledPointer& sampled : made.sampled) {
-    sampled->samples().write_to(begin_file(include.parent_path() / sampled->file()), progress);
+    const fs::path file = include.parent_path() / sampled->file();
+    sampled->samples().write_to(begin_file(file), progress);
+    now.insert(file);
   }
   begin_file(include).write(made.include);
   begin_file(files.path).write(made.scene);
   for (const auto& file : written) file->commit();
+  for (const std::string& file : earlier) {
+    std::error_code left_over;  // does no harm
+    if (!now.contains(file)) fs::remove(file, left_over);
+  }
   return made.sentences;
 }
 

@@ -276,6 +276,7 @@ std::vector<FieldError> errors_of_fields(std::span<const Expression> exact,
     prove(out[i], sampled[i], bounds, most_steps / fields, here);
     measure(out[i], exact[i], sampled[i], bounds, here);
   }
+  if (progress && !progress(1)) throw Cancelled();
   return out;
 }
 

@@ -17,9 +17,11 @@ namespace sardf::povray {
 namespace {
 
 constexpr size_t random_points = 8192;
-constexpr int most_parts = 512;
+constexpr int most_bounds = 8192;
+// The way from exact to sampled values is cut into so many windows, to either side.
+constexpr int windows = 8;
 // Of operations over intervals, for all fields together: a few seconds.
-constexpr double most_steps = 5e5;
+constexpr double most_steps = 1e6;
 // A bound over parts is never less than that at a point.
 constexpr double close_enough = 1.02;
 
@@ -71,11 +73,45 @@ class ErrorTape {
     double error = 0;
     Interval values;  // exact and sampled ones
   };
-  /// Nothing where no point of the box has its inputs in the samples' boxes.
-  std::optional<Bound> over(const BoundingBox& box) {
+  /// Where points are, and where there is one sampled function only, its exact values.
+  struct Domain {
+    BoundingBox box;
+    Interval exact = Interval::all();
+  };
+  /// Nothing where no point of the domain has its inputs in the samples' boxes.
+  std::optional<Bound> over(const Domain& domain) { return over(domain, {-1, 1}, 1); }
+
+  bool has_windows() const { return sources_ == 1; }
+  /// The mean over the windows of the way, to the worse side: a kink somewhere on the way does not
+  /// count for all of it. After over() for the same domain.
+  double over_windows(const Domain& domain) {
+    double worst = 0;
+    for (int side : {-1, 1}) {
+      double sum = 0;
+      for (int i = 0; i < windows; ++i) {
+        const double near = side * double(i) / windows, far = side * double(i + 1) / windows;
+        const auto bound = over(domain, {min(near, far), max(near, far)}, 1.0 / windows);
+        if (bound) sum = rounded_up(sum + bound->error);
+      }
+      worst = max(worst, sum);
+    }
+    return worst;
+  }
+  /// The exact values of the one sampled function in the last domain.
+  const Interval& exact_values() const { return exact_values_; }
+  /// Its error there.
+  double source_error() const { return source_error_; }
+
+ private:
+  int passes() const { return (sources_ + 2) / 3; }
+
+  // `window`: of the way from exact to sampled values, in errors; `share` of it that is gone there.
+  std::optional<Bound> over(const Domain& domain, const Interval& window, double share) {
+    window_ = window;
+    exact_part_ = domain.exact;
     Bound out;
     for (int pass = 0; pass < passes(); ++pass) {
-      if (!run(box, 3 * pass)) return std::nullopt;
+      if (!run(domain.box, 3 * pass)) return std::nullopt;
       const Slope& slope = registers_[tape_.outputs()[0]].slope;
       const double shares = std::sqrt(double(std::min(3, sources_ - 3 * pass)));
       double sum = 0;
@@ -85,12 +121,9 @@ class ErrorTape {
       out.error = rounded_up(out.error + (by_length < sum ? by_length : sum));
       out.values = slope.value;
     }
-    out.error = min(out.error, width(out.values));
+    out.error = min(rounded_up(out.error * share), width(out.values));
     return out;
   }
-
- private:
-  int passes() const { return (sources_ + 2) / 3; }
 
   // The derivatives by the sources first, first + 1 and first + 2. False: no point counts.
   bool run(const BoundingBox& box, int first) {
@@ -133,9 +166,8 @@ class ErrorTape {
   }
 
   // s(inputs at t) - (1 - t) (s - f)(exact inputs), for the samples s of f: it goes from f to s.
-  static std::optional<Slope> of_samples(const SampledFunction& sampled,
-                                         const std::array<Slope, max_arity>& in, bool moves,
-                                         int axis) {
+  std::optional<Slope> of_samples(const SampledFunction& sampled,
+                                  const std::array<Slope, max_arity>& in, bool moves, int axis) {
     std::array<Interval, max_arity> inside;
     for (int k = 0; k < sampled.info().arity; ++k) {
       const Interval& box = sampled.samples().grid().box[size_t(k)];
@@ -144,9 +176,17 @@ class ErrorTape {
       if (!goes_on(sampled, k)) return std::nullopt;
       inside[k] = in[k].value.hi < box.lo ? box.lo : box.hi;
     }
-    const Interval all =
-        hull(sampled.exact().interval(inside.data()), sampled.interval(inside.data()));
+    Interval exact = sampled.exact().interval(inside.data());
+    Interval all = hull(exact, sampled.interval(inside.data()));
     const double error = min(sampled.error().proven, width(all));
+    if (has_windows()) {
+      exact = intersect(exact, exact_part_);
+      if (!(exact.lo <= exact.hi)) return std::nullopt;
+      exact_values_ = exact;
+      source_error_ = error;
+      const Interval here = intersect(all, exact + Interval(error) * window_);
+      if (here.lo <= here.hi) all = here;
+    }
     Slope out = sampled.slope(in.data());
     out.value = moves ? out.value + Interval{-error, error} : all;
     if (!moves) out = {out.value, {}, 0};
@@ -159,48 +199,114 @@ class ErrorTape {
 
   Tape tape_;
   int sources_ = 0;
+  Interval window_, exact_part_, exact_values_;
+  double source_error_ = 0;
   std::vector<Change> registers_;
 };
 
+using Domain = ErrorTape::Domain;
+
 struct Part {
-  BoundingBox box;
+  Domain domain;
   double error;
+  bool by_windows = false;
+  int depth = 0;
   bool operator<(const Part& other) const { return error < other.error; }
 };
+using Parts = std::array<Part, 2>;
 
-std::array<BoundingBox, 2> halves(const BoundingBox& box) {
-  const Vec3 size = box.size();
+std::array<Domain, 2> halves_in_space(const Domain& domain) {
+  const Vec3 size = domain.box.size();
   const size_t axis = size_t(std::max_element(size.begin(), size.end()) - size.begin());
-  std::array<BoundingBox, 2> parts{box, box};
-  parts[0].hi[axis] = parts[1].lo[axis] = box.center()[axis];
+  std::array<Domain, 2> parts{domain, domain};
+  parts[0].box.hi[axis] = parts[1].box.lo[axis] = domain.box.center()[axis];
   return parts;
 }
 
-void prove(FieldError& error, const Expression& sampled, const BoundingBox& bounds, double steps,
-           const Progress& progress) {
-  ErrorTape tape(sampled);
-  // The whole, and three boxes for each further part: its halves and a point.
-  const int parts = int(std::clamp(steps / (3 * tape.steps()), 1.0, double(most_parts)));
-  const std::optional<ErrorTape::Bound> whole = tape.over(bounds);
-  if (!whole) return;
-  std::priority_queue<Part> pending;
-  pending.push({bounds, whole->error});
-  double least = 0;
-  for (int used = 1; used < parts; ++used) {
-    const Part worst = pending.top();
-    if (worst.error <= close_enough * least) break;
-    pending.pop();
-    if (progress && !progress(0)) throw Cancelled();
-    const Vec3 center = worst.box.center();
-    if (const auto at = tape.over({center, center})) least = max(least, at->error);
-    for (const BoundingBox& half : halves(worst.box)) {
-      const std::optional<ErrorTape::Bound> bound = tape.over(half);
-      // A part is never worse than the whole.
-      pending.push({half, bound ? min(worst.error, bound->error) : 0});
-    }
-  }
-  error.proven = pending.top().error;
+std::array<Domain, 2> halves_by_value(const Domain& domain, const Interval& values) {
+  const double middle = values.lo + 0.5 * (values.hi - values.lo);
+  std::array<Domain, 2> parts{domain, domain};
+  parts[0].exact = {values.lo, middle};
+  parts[1].exact = {middle, values.hi};
+  return parts;
 }
+
+/// Cuts the bounds where the bound is largest, as long as that helps.
+class Proof {
+ public:
+  Proof(const Expression& sampled, double steps)
+      : tape_(sampled), most_(std::clamp(steps / tape_.steps(), 1.0, double(most_bounds))) {}
+
+  double bound(const BoundingBox& bounds, const Progress& progress) {
+    const Domain all{bounds};
+    const auto whole = over(all);
+    if (!whole) return infinity;
+    std::priority_queue<Part> pending;
+    pending.push({all, *whole});
+    double least = 0;
+    while (used_ < most_ && pending.top().error > close_enough * least) {
+      if (progress && !progress(0)) throw Cancelled();
+      Part worst = pending.top();
+      pending.pop();
+      if (tape_.has_windows() && !worst.by_windows) {
+        worst.error = min(worst.error, over_windows(worst.domain));
+        worst.by_windows = true;
+        pending.push(worst);
+        continue;
+      }
+      if (worst.depth % 4 == 0) least = max(least, at_center(worst.domain));
+      for (const Part& half : halves(worst)) pending.push(half);
+    }
+    return pending.top().error;
+  }
+
+ private:
+  std::optional<double> over(const Domain& domain) {
+    ++used_;
+    const auto bound = tape_.over(domain);
+    if (!bound) return std::nullopt;
+    return bound->error;
+  }
+  double over_windows(const Domain& domain) {
+    used_ += 2 * windows;
+    return tape_.over_windows(domain);
+  }
+
+  double at_center(const Domain& domain) {
+    const Vec3 center = domain.box.center();
+    const Domain point{{center, center}};
+    const auto bound = over(point);
+    if (!bound) return 0;
+    return tape_.has_windows() ? min(*bound, over_windows(point)) : *bound;
+  }
+
+  // In space or by the value of the sampled function: what bounds better. Where both are as good,
+  // by the value, of which alone most fields depend, down to a part of its error.
+  Parts halves(const Part& worst) {
+    const Parts in_space = bounded(worst, halves_in_space(worst.domain));
+    if (!tape_.has_windows() || !over(worst.domain)) return in_space;
+    const Interval values = tape_.exact_values();
+    if (!(values.lo < values.hi && width(values) < infinity)) return in_space;
+    const Parts by_value = bounded(worst, halves_by_value(worst.domain, values));
+    const double a = max(in_space[0].error, in_space[1].error);
+    const double b = max(by_value[0].error, by_value[1].error);
+    const bool wide = width(values) > tape_.source_error() / 4;
+    return b < a || (!(a < b) && wide) ? by_value : in_space;
+  }
+
+  Parts bounded(const Part& worst, const std::array<Domain, 2>& domains) {
+    Parts out;
+    for (size_t i = 0; i < 2; ++i) {
+      const auto bound = over(domains[i]);
+      // A part is never worse than the whole.
+      out[i] = {domains[i], bound ? min(worst.error, *bound) : 0, false, worst.depth + 1};
+    }
+    return out;
+  }
+
+  ErrorTape tape_;
+  double most_, used_ = 0;
+};
 
 // Where the inputs of all sampled functions lie in the samples' boxes.
 class Claimed {
@@ -273,7 +379,7 @@ std::vector<FieldError> errors_of_fields(std::span<const Expression> exact,
       out[i].proven = 0;
       continue;
     }
-    prove(out[i], sampled[i], bounds, most_steps / fields, here);
+    out[i].proven = Proof(sampled[i], most_steps / fields).bound(bounds, here);
     measure(out[i], exact[i], sampled[i], bounds, here);
   }
   if (progress && !progress(1)) throw Cancelled();

@@ -39,6 +39,11 @@ class ErrorTape {
   /// Nothing where no point of the domain has its inputs in the samples' boxes.
   std::optional<Bound> over(const Domain& domain) { return over(domain, {-1, 1}, 1); }
 
+  /// As if all of the way were as steep as its first window: for choosing where to cut.
+  std::optional<Bound> near(const Domain& domain) {
+    return over(domain, {0, 1.0 / error_windows}, 1);
+  }
+
   bool has_windows() const { return sources_ == 1; }
   /// The mean over the windows of the way, to the worse side: a kink somewhere on the way does not
   /// count for all of it. After over() for the same domain.

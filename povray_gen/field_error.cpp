@@ -64,7 +64,7 @@ class Proof {
       if (progress && !progress(0)) throw Cancelled();
       Part worst = pending.top();
       pending.pop();
-      if (tape_.has_windows() && !worst.by_windows) {
+      if (!worst.by_windows && windows_help(worst.domain)) {
         worst.error = min(worst.error, over_windows(worst.domain));
         worst.by_windows = true;
         pending.push(worst);
@@ -83,6 +83,11 @@ class Proof {
     if (!bound) return std::nullopt;
     return bound->error;
   }
+  // Over much wider values than the errors, all windows hold what the whole way does.
+  bool windows_help(const Domain& domain) {
+    return tape_.has_windows() && over(domain) &&
+           width(tape_.exact_values()) <= 2 * tape_.source_error();
+  }
   double over_windows(const Domain& domain) {
     used_ += 2 * error_windows;
     return tape_.over_windows(domain);
@@ -97,17 +102,20 @@ class Proof {
   }
 
   // In space or by the value of the sampled function: what bounds better. Where both are as good,
-  // by the value, of which alone most fields depend, down to a part of its error.
+  // by the value, down to a part of its error, if the field's slope by it differs.
   Parts halves(const Part& worst) {
     const Parts in_space = bounded(worst, halves_in_space(worst.domain));
     if (!tape_.has_windows() || !over(worst.domain)) return in_space;
     const Interval values = tape_.exact_values();
     if (!(values.lo < values.hi && width(values) < infinity)) return in_space;
+    const bool wide = width(values) > tape_.source_error() / 4;
     const Parts by_value = bounded(worst, halves_by_value(worst.domain, values));
     const double a = max(in_space[0].error, in_space[1].error);
     const double b = max(by_value[0].error, by_value[1].error);
-    const bool wide = width(values) > tape_.source_error() / 4;
-    return b < a || (!(a < b) && wide) ? by_value : in_space;
+    if (a != b) return a < b ? in_space : by_value;
+    ++used_;
+    const auto near = tape_.near({worst.domain.box, by_value[0].domain.exact.hi});
+    return wide && near && near->error < 0.98 * worst.error ? by_value : in_space;
   }
 
   Parts bounded(const Part& worst, const std::array<Domain, 2>& domains) {

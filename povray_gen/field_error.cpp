@@ -113,9 +113,12 @@ class Proof {
     const double a = max(in_space[0].error, in_space[1].error);
     const double b = max(by_value[0].error, by_value[1].error);
     if (a != b) return a < b ? in_space : by_value;
-    ++used_;
-    const auto near = tape_.near({worst.domain.box, by_value[0].domain.exact.hi});
-    return wide && near && near->error < 0.98 * worst.error ? by_value : in_space;
+    for (double value : {values.lo, by_value[0].domain.exact.hi, values.hi}) {
+      ++used_;
+      const auto near = tape_.near({worst.domain.box, value});
+      if (wide && near && near->error < 0.98 * worst.error) return by_value;
+    }
+    return in_space;
   }
 
   Parts bounded(const Part& worst, const std::array<Domain, 2>& domains) {

@@ -116,8 +116,8 @@ py::dict bake_maps(const Scene& scene, const Mesh& surface, int size,
 
 void write_povray(const Scene& scene, const std::string& path, const std::string& render,
                   const py::object& camera, const std::string& look, int width, int height,
-                  int samples, py::object callable) {
-  povray::SceneFiles files{path, look, {}, width, height, samples};
+                  int samples, bool all_fields, py::object callable) {
+  povray::SceneFiles files{path, look, {}, width, height, samples, all_fields};
   files.camera = camera.is_none()
                      ? scene_camera(scene, width, height)
                      : camera_from_text(py::str(py::module_::import("json").attr("dumps")(camera)));
@@ -229,14 +229,17 @@ void bind_scenes(py::module_& m) {
            "A camera that frames the object: matrix_world, lens (mm), sensor_width, ...")
       .def("povray", &write_povray, py::arg("path"), py::arg("render") = "",
            py::arg("camera") = py::none(), py::arg("look") = "shaded", py::arg("width") = 640,
-           py::arg("height") = 480, py::arg("samples") = 256, py::arg("progress") = py::none(),
+           py::arg("height") = 480, py::arg("samples") = 256, py::arg("all_fields") = false,
+           py::arg("progress") = py::none(),
            "Writes path (.pov), the .inc beside it, and density files (.df3) of what has no "
            "formula, "
-           "whose errors the .inc states, for POV-Ray 3.7; renders them to `render` "
+           "whose errors, and those of all that is computed from them, the .inc states, for "
+           "POV-Ray 3.7; renders them to `render` "
            "(.exr or .png) unless it is empty. camera: as camera() gives it; look: shaded, flat "
            "(the colours alone) or normals; samples: the most of what has no formula, as the edge "
            "of "
-           "a cube, 8 to 512.")
+           "a cube, 8 to 512; all_fields: also write the fields that need samples which the "
+           "picture does not.")
       .def("with_blend", &with_blend, py::arg("blend"),
            "The scene with every union, intersection and difference joined by `blend` in place of "
            "its own.")

@@ -6,6 +6,7 @@
 #include "error_of.hpp"
 #include "feature_checks.hpp"
 #include "sardf/arithmetic.hpp"
+#include "sardf/certify.hpp"
 #include "sardf/curve_set.hpp"
 #include "sardf/derivative.hpp"
 #include "sardf/formula.hpp"
@@ -356,6 +357,9 @@ TEST(ThirdDerivatives, AreAnErrorThatNamesTheField) {
   // The same where numbers are asked for.
   const Evaluator bend(derivative(derivative(f, 0), 1));
   EXPECT_EQ(error_of([&] { features::gradient(bend, {1, 2, 3}); }), message);
+  // Bounds ask for none.
+  const BoundingBox box{{4, 4, 4}, {5, 5, 5}};
+  EXPECT_EQ(certified_lipschitz(bend, box).value, infinity);
   // What does not vary has all derivatives.
   EXPECT_EQ(
       derivative(

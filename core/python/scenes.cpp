@@ -9,6 +9,7 @@
 #include "sardf/bake_channels.hpp"
 #include "sardf/camera_file.hpp"
 #include "sardf/error.hpp"
+#include "sardf/pulse.hpp"
 #include "sardf/scene_file.hpp"
 #include "sardf/surface.hpp"
 

@@ -197,7 +197,13 @@ Field random_field(Random& r, const Constructor& constructor, int depth) {
     for (const ParameterInfo& p : constructor.parameters) {
       arguments.push_back(random_value(r, p, depth));
     }
-    return make_field(constructor, arguments);
+    const Field made = make_field(constructor, arguments);
+    // Of distances found by a search there are no third derivatives, which gradients may need.
+    const Vec3 at{};
+    double value;
+    Vec3 slope;
+    Evaluator(made.expression()).gradients(at.data(), 1, &value, slope.data());
+    return made;
   });
 }
 

@@ -11,6 +11,8 @@
 #include "povray_harness.hpp"
 #include "sampled_shapes.hpp"
 #include "sardf/arithmetic.hpp"
+#include "sardf/curve_set.hpp"
+#include "sardf/derivative.hpp"
 #include "sardf/error.hpp"
 #include "sardf/operation_of.hpp"
 #include "sardf/ops.hpp"
@@ -236,6 +238,29 @@ TEST(PovraySamples, OfNearestPointsAreRightAwayFromWhereTheyJump) {
     }
     EXPECT_GT(points.size(), 500u);
     EXPECT_LT(largest_difference(exact, points, in_povray(text, "part_near", points)), 1e-8);
+  }
+}
+
+// Of a line through the whole scene: distance, nearest point and its derivatives are samples.
+TEST(PovraySamples, OfSecondDerivativesAreNear) {
+  CurveData data;
+  data.control_points = {{-5, 0.2, 0}, {5, 0.2, 0}};
+  data.degree = 1;
+  const Expression u =
+      call(distance_operation(std::make_shared<CurveSet>("c", "", data)), {X, Y, Z});
+  const Expression bend = derivative(derivative(u, 1), 1);
+  const PovrayScene scene = scene_with({{"bend", bend}});
+  const SceneText text = povray::scene_text(scene, "part.inc", coarse());
+  EXPECT_EQ(text.sampled.size(), 3u);
+  std::vector<Vec3> points;
+  for (const Vec3& p : random_points(scene.bounds, 1000)) {
+    if (std::hypot(p[1] - 0.2, p[2]) > 0.3) points.push_back(p);
+  }
+  const std::vector<double> found = in_povray(text, "part_bend", points);
+  for (size_t i = 0; i < points.size(); ++i) {
+    const double y = points[i][1] - 0.2, z = points[i][2], d = std::hypot(y, z);
+    // The distance's samples are off by some 1e-3, which is divided by its square.
+    EXPECT_NEAR(found[i], z * z / (d * d * d), 0.05);
   }
 }
 

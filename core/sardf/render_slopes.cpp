@@ -1,0 +1,106 @@
+#include "sardf/render_slopes.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sardf::rendering {
+
+namespace {
+
+constexpr int most_cells = 8;
+// A field that is hardly steeper than a distance gains nothing from finer cells.
+constexpr double steep = 1.1;
+
+size_t index(int cells, const std::array<int, 3>& cell) {
+  return (size_t(cell[2]) * cells + cell[1]) * cells + cell[0];
+}
+
+std::array<int, 3> place(int cells, size_t i) {
+  const int all = int(i);
+  return {all % cells, all / cells % cells, all / (cells * cells)};
+}
+
+// NaN is no bound.
+double bound_of(double length) { return length >= 0 ? length : infinity; }
+
+double largest_around(int cells, const std::vector<double>& of_cell, size_t i) {
+  const std::array<int, 3> at = place(cells, i);
+  double largest = 0;
+  for (int k = 0; k < 27; ++k) {
+    const std::array<int, 3> near{at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1, at[2] + k / 9 - 1};
+    const bool in_box =
+        std::all_of(near.begin(), near.end(), [&](int c) { return c >= 0 && c < cells; });
+    if (in_box) largest = std::max(largest, of_cell[index(cells, near)]);
+  }
+  return largest;
+}
+
+}  // namespace
+
+LocalSlopes::LocalSlopes(const Evaluator& field, const BoundingBox& box,
+                         const std::function<bool()>& go_on)
+    : box_(box) {
+  const double all = bound_of(field.slope(box).length);
+  levels_.push_back({1, infinity, {all}, {all}});
+  while (levels_.back().cells < most_cells && all > steep) {
+    Level finer = refined(field, levels_.back(), go_on);
+    // Where two halvings gain nothing there is nothing to gain.
+    levels_.push_back(std::move(finer));
+  }
+}
+
+BoundingBox LocalSlopes::cell_box(const Level& level, const std::array<int, 3>& cell) const {
+  const Vec3 edge = 1.0 / level.cells * box_.size();
+  BoundingBox out;
+  for (int axis = 0; axis < 3; ++axis) {
+    // Neighbours overlap by a rounding, so that no point is between them.
+    const double slack = 1e-9 * edge[axis];
+    out.lo[axis] = box_.lo[axis] + cell[axis] * edge[axis] - slack;
+    out.hi[axis] = box_.lo[axis] + (cell[axis] + 1) * edge[axis] + slack;
+  }
+  return out;
+}
+
+LocalSlopes::Level LocalSlopes::refined(const Evaluator& field, const Level& coarse,
+                                        const std::function<bool()>& go_on) const {
+  Level level{2 * coarse.cells, 0, {}, {}};
+  const Vec3 size = box_.size();
+  level.reach = std::min({size[0], size[1], size[2]}) / level.cells;
+  level.of_cell.resize(size_t(level.cells) * level.cells * level.cells);
+  tbb::parallel_for(size_t(0), level.of_cell.size(), [&](size_t i) {
+    const std::array<int, 3> at = place(level.cells, i);
+    const double known = coarse.of_cell[index(coarse.cells, {at[0] / 2, at[1] / 2, at[2] / 2})];
+    level.of_cell[i] = known;
+    if (!(known > steep) || !go_on()) return;
+    // Far from the surface steps are long enough. Neighbours of cells with surface count as near.
+    const BoundingBox box = cell_box(level, at);
+    if (std::abs(field.value(box.center())) > 1.5 * known * box.diagonal()) return;
+    level.of_cell[i] = std::min(known, bound_of(field.slope(box).length));
+  });
+  level.around.resize(level.of_cell.size());
+  for (size_t i = 0; i < level.around.size(); ++i) {
+    level.around[i] = largest_around(level.cells, level.of_cell, i);
+  }
+  return level;
+}
+
+double LocalSlopes::clear_radius(const Vec3& point, double depth) const {
+  if (!(depth > 0)) return 0;
+  // On the way to a point no farther than a cell's shortest side only the cell and its neighbours
+  // are crossed.
+  double radius = 0;
+  for (const Level& level : levels_) {
+    std::array<int, 3> cell;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double share = (point[axis] - box_.lo[axis]) / (box_.hi[axis] - box_.lo[axis]);
+      cell[axis] = std::clamp(int(share * level.cells), 0, level.cells - 1);
+    }
+    const double slope = level.around[index(level.cells, cell)];
+    radius = std::max(radius, std::min(level.reach, depth / slope));
+  }
+  return radius * (1 - 1e-9);
+}
+
+}  // namespace sardf::rendering

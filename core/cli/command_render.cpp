@@ -1,5 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <iostream>
 
@@ -51,16 +53,17 @@ void render_to_file(Options& options) {
   render_options.camera = options.camera.empty() ? scene_camera(scene, size.width, size.height)
                                                  : read_camera(options.camera);
   const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start_of_work = std::clock();
   const RenderedPicture picture = render(scene, render_options, terminal_progress("rendering"));
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  const double work = double(std::clock() - start_of_work) / CLOCKS_PER_SEC;
   // Normals are colours of a kind that no colour space may change.
   const bool is_color = render_options.look != RenderLook::normals;
   write_image(options.output, picture.image, is_color ? Meaning::color : Meaning::data, depth,
               picture.channels);
   std::cout << options.output << "\n";
   if (!options.time) return;
-  const double pixels = double(size.width) * size.height;
-  std::cout << taken.count() << " s, " << pixels / taken.count() << " pixels per second\n";
+  std::printf("%.4f s, %.4f s of all threads together\n", taken.count(), work);
 }
 
 }  // namespace

@@ -21,8 +21,9 @@ constexpr int tile_edge = 32, most_pixels = 16384;
 constexpr double default_tolerance = 1e-4;
 // Above this error, in diagonals, beams and steps in single precision stop too early to be of use.
 constexpr double most_single_error = 1e-3;
-// Steps of a ray in single precision and in double before intervals are tried.
-constexpr int single_steps = 64, double_steps = 16;
+// Steps of a ray in single precision and in double before intervals are tried, which cost more
+// than hundreds of steps in blocks.
+constexpr int single_steps = 512, double_steps = 512;
 
 void check_options(const RenderOptions& options, const BoundingBox& bounds) {
   for (const int edge : {options.width, options.height}) {
@@ -45,13 +46,19 @@ void check_options(const RenderOptions& options, const BoundingBox& bounds) {
   }
 }
 
+// Finer bounds of the slope pay where there are many rays.
+int slope_cells(const RenderOptions& options) {
+  const double pixels = double(options.width) * options.height;
+  return pixels < 5e4 ? 4 : pixels < 1e6 ? 8 : 16;
+}
+
 Subject make_subject(const Evaluator& solid, const BoundingBox& bounds,
                      const RenderOptions& options, Watch& watch) {
   const double diagonal = bounds.diagonal();
   Subject subject{solid,
                   bounds,
                   Rays(options.camera, options.width, options.height),
-                  LocalSlopes(solid, bounds, [&] { return watch.go_on(); }),
+                  LocalSlopes(solid, bounds, slope_cells(options), [&] { return watch.go_on(); }),
                   options.tolerance.value_or(default_tolerance * diagonal),
                   single_precision_error(solid, bounds),
                   0};
@@ -103,19 +110,27 @@ class Painter {
   void paint(const Subject& subject, const Tile& tile, Watch& watch) const {
     const std::vector<Ray> rays = cast(subject, tile, options_, watch);
     std::vector<Hit> hits;
+    std::vector<const Ray*> met;
     for (const Ray& ray : rays) {
       if (ray.state != Ray::State::met) continue;
-      hits.push_back({ray.line.at(ray.beyond), normalized(-1.0 * ray.line.along)});
+      hits.push_back({ray.line.at(ray.beyond), -ray.per_length * ray.line.along});
+      met.push_back(&ray);
     }
     if (options_.look != RenderLook::flat || options_.normals) find_normals(subject, hits, watch);
     color(subject, hits, watch);
-    const int width = std::min(tile.edge, options_.width - tile.x);
-    size_t hit = 0;
-    for (size_t i = 0; i < rays.size(); ++i) {
-      float* pixel = image_.at(tile.x + int(i) % width, tile.y + int(i) / width);
-      const bool met = rays[i].state == Ray::State::met;
-      set(pixel, rays[i], met ? &hits[hit++] : nullptr);
+    for (size_t i = 0; i < hits.size(); ++i) set(met[i]->x, met[i]->y, hits[i], met[i]->beyond);
+  }
+
+  /// All that a pixel shows where there is nothing of the solid.
+  std::vector<float> background() const {
+    std::vector<float> pixel;
+    for (const double channel : options_.background.value_or(Vec3{})) {
+      pixel.push_back(float(channel));
     }
+    pixel.push_back(options_.background ? 1 : 0);
+    if (options_.depth) pixel.push_back(float(infinity));
+    if (options_.normals) pixel.insert(pixel.end(), 3, 0);
+    return pixel;
   }
 
  private:
@@ -124,18 +139,17 @@ class Painter {
       for (Hit& hit : hits) hit.color = 0.5 * (hit.normal + Vec3{1, 1, 1});
       return;
     }
-    find_colors(color_, hits, watch);
+    find_colors(subject, color_, hits, watch);
     if (options_.look == RenderLook::shaded) light(subject, hits, watch);
   }
 
-  void set(float* pixel, const Ray& ray, const Hit* hit) const {
-    const Vec3 behind = options_.background.value_or(Vec3{});
-    const Vec3& shown = hit ? hit->color : behind;
-    for (const double channel : shown) *pixel++ = float(channel);
-    *pixel++ = hit || options_.background ? 1 : 0;
-    if (options_.depth) *pixel++ = hit ? float(ray.beyond) : float(infinity);
+  void set(int x, int y, const Hit& hit, double depth) const {
+    float* pixel = image_.at(x, y);
+    for (const double channel : hit.color) *pixel++ = float(channel);
+    *pixel++ = 1;
+    if (options_.depth) *pixel++ = float(depth);
     if (!options_.normals) return;
-    for (const double component : hit ? hit->normal : Vec3{}) *pixel++ = float(component);
+    for (const double component : hit.normal) *pixel++ = float(component);
   }
 
   const RenderOptions& options_;
@@ -163,8 +177,12 @@ RenderedPicture render(const Scene& scene, const RenderOptions& options, const P
   rendering::check_options(options, scene.bounds());
   Image& image = picture.image;
   image = {options.width, options.height, int(picture.channels.size()), {}};
-  image.samples.resize(size_t(image.width) * image.height * image.channels);
+  image.samples.reserve(size_t(image.width) * image.height * image.channels);
   const rendering::Painter painter(scene, options, image);
+  const std::vector<float> behind = painter.background();
+  for (size_t i = size_t(image.width) * image.height; i > 0; --i) {
+    image.samples.insert(image.samples.end(), behind.begin(), behind.end());
+  }
   const Evaluator drawn(scene.drawn());
   rendering::for_tiles(drawn, scene.bounds(), options, progress,
                        [&](const auto& subject, const auto& tile, auto& watch) {
@@ -180,12 +198,9 @@ std::vector<double> render_depths(const Evaluator& solid, const BoundingBox& bou
   rendering::for_tiles(
       solid, bounds, options, progress,
       [&](const auto& subject, const rendering::Tile& tile, rendering::Watch& watch) {
-        const auto rays = rendering::cast(subject, tile, options, watch);
-        const int width = std::min(tile.edge, options.width - tile.x);
-        for (size_t i = 0; i < rays.size(); ++i) {
-          if (rays[i].state != rendering::Ray::State::met) continue;
-          const size_t row = size_t(tile.y) + i / size_t(width);
-          depths[row * options.width + tile.x + i % size_t(width)] = rays[i].beyond;
+        for (const auto& ray : rendering::cast(subject, tile, options, watch)) {
+          if (ray.state != rendering::Ray::State::met) continue;
+          depths[size_t(ray.y) * options.width + ray.x] = ray.beyond;
         }
       });
   return depths;

@@ -12,7 +12,7 @@ namespace {
 constexpr double shortest_step = 0.7;
 constexpr int most_steps = 64;
 constexpr int split = 4;  // along each side
-constexpr int smallest_edge = 2;
+constexpr int smallest_edge = 8;
 
 struct Beam {
   double x, y, edge;  // the middle and the side, in pixels
@@ -69,8 +69,9 @@ void advance(const Subject& subject, std::vector<Beam>& beams, double end, Watch
         // beam's is clear; so is what lies as far from the beam's as that makes with the way there.
         const double radius =
             subject.slopes.clear_radius(inside[i], -double(block.value[i]) - error);
-        const double away = norm(beam.line.at(beam.clear) - inside[i]);
-        const double step = step_in_ball(beam, beam.clear, std::hypot(radius, away));
+        const Vec3 way = beam.line.at(beam.clear) - inside[i];
+        const double step =
+            step_in_ball(beam, beam.clear, std::sqrt(radius * radius + dot(way, way)));
         const double wide = beam.spread.at(beam.clear);
         beam.done = !(step > shortest_step * wide);
         if (step > 0) beam.clear += step * (1 - 1e-9);
@@ -94,16 +95,21 @@ std::vector<Beam> split_beams(const std::vector<Beam>& beams, double end) {
   return parts;
 }
 
-Ray make_ray(const Subject& subject, double x, double y, double clear) {
+Ray make_ray(const Subject& subject, int x, int y, double clear) {
   Ray ray;
-  ray.line = subject.rays.through(x, y);
+  ray.x = x;
+  ray.y = y;
+  ray.line = subject.rays.through(x + 0.5, y + 0.5);
+  ray.per_length = 1 / std::sqrt(dot(ray.line.along, ray.line.along));
+  ray.tolerance = subject.tolerance * ray.per_length;
   const Stretch in_box = stretch_in(ray.line, subject.bounds);
-  ray.clear = std::max(clear, in_box.begin);
   ray.end = in_box.end;
-  ray.tolerance = subject.tolerance / norm(ray.line.along);
+  ray.clear = std::max(clear, in_box.begin);
+  if (ray.clear <= ray.end) {
+    ray.clear = subject.slopes.clear_until(ray.line, ray.clear, std::nan(""));
+  }
   ray.before = ray.before_value = std::nan("");
   ray.beyond = ray.beyond_value = infinity;
-  if (!(ray.clear <= ray.end)) ray.state = Ray::State::missed;
   return ray;
 }
 
@@ -123,21 +129,18 @@ std::vector<Ray> begin_rays(const Subject& subject, const Tile& tile, int width,
     if (beams.empty() || beams[0].edge <= smallest_edge) break;
     beams = split_beams(beams, depths.end);
   }
-  const int columns = std::min(tile.edge, width - tile.x);
-  const int rows = std::min(tile.edge, height - tile.y);
-  std::vector<double> clear(size_t(columns) * rows, infinity);
-  for (const Beam& beam : beams) {
-    for (int k = 0; k < smallest_edge * smallest_edge; ++k) {
-      const int x = int(beam.x - 0.5 * beam.edge) - tile.x + k % smallest_edge;
-      const int y = int(beam.y - 0.5 * beam.edge) - tile.y + k / smallest_edge;
-      if (x < columns && y < rows) clear[size_t(y) * columns + x] = beam.clear;
-    }
-  }
   std::vector<Ray> rays;
-  rays.reserve(clear.size());
-  for (size_t i = 0; i < clear.size(); ++i) {
-    rays.push_back(make_ray(subject, tile.x + int(i) % columns + 0.5,
-                            tile.y + int(i) / columns + 0.5, clear[i]));
+  for (const Beam& beam : beams) {
+    if (beam.clear >= depths.end) continue;
+    const int left = int(beam.x - 0.5 * beam.edge), top = int(beam.y - 0.5 * beam.edge);
+    const int right = std::min(width, left + int(beam.edge));
+    const int bottom = std::min(height, top + int(beam.edge));
+    for (int y = top; y < bottom; ++y) {
+      for (int x = left; x < right; ++x) {
+        const Ray ray = make_ray(subject, x, y, beam.clear);
+        if (ray.clear <= ray.end) rays.push_back(ray);
+      }
+    }
   }
   return rays;
 }

@@ -34,7 +34,8 @@ void use_sample(const Subject& subject, Ray& ray, const Vec3& point, double valu
   ray.before = depth;
   ray.before_value = value;
   const double radius = subject.slopes.clear_radius(point, -value - error);
-  ray.clear = depth + radius / norm(ray.line.along);
+  ray.clear = std::max(depth + radius * ray.per_length,
+                       subject.slopes.clear_until(ray.line, depth, -value - error));
   if (!(ray.clear < ray.end)) ray.state = State::missed;
 }
 

@@ -41,10 +41,10 @@ double next_trial(const Bracket& b, int step) {
 
 // Sets `beyond` when it is known.
 void use_value(Bracket& b, double value, double diagonal) {
-  const double slope = secant_slope(b), length = norm(b.ray->line.along);
+  const double slope = secant_slope(b);
   const double newton = b.trial - value / slope;
-  if (std::abs(newton - b.trial) * length <= last_step * diagonal && newton >= b.outside &&
-      newton <= b.inside) {
+  if (std::abs(newton - b.trial) <= last_step * diagonal * b.ray->per_length &&
+      newton >= b.outside && newton <= b.inside) {
     b.ray->beyond = newton;
     b.done = true;
     return;
@@ -57,7 +57,7 @@ void use_value(Bracket& b, double value, double diagonal) {
     b.outside_value = value;
   }
   b.ray->beyond = b.inside;
-  b.done = (b.inside - b.outside) * length <= accuracy * diagonal;
+  b.done = b.inside - b.outside <= accuracy * diagonal * b.ray->per_length;
 }
 
 }  // namespace
@@ -65,9 +65,7 @@ void use_value(Bracket& b, double value, double diagonal) {
 void find_roots(const Subject& subject, std::span<Ray> rays, Watch& watch) {
   std::vector<Bracket> brackets;
   for (Ray& ray : rays) {
-    if (ray.state != Ray::State::met) continue;
-    // A ray that begins in the solid meets it there.
-    if (ray.beyond > ray.clear || ray.before_value < 0) brackets.push_back(bracket_of(ray));
+    if (ray.state == Ray::State::met) brackets.push_back(bracket_of(ray));
   }
   const double diagonal = subject.bounds.diagonal();
   thread_local Block<double> block;

@@ -19,8 +19,9 @@ struct Hit {
 /// The outward normals of the hits.
 void find_normals(const Subject& subject, std::span<Hit> hits, Watch& watch);
 
-/// The colours themselves, as POV-Ray's flat picture has them: limited to [0, 1].
-void find_colors(const Evaluator& color, std::span<Hit> hits, Watch& watch);
+/// The colours themselves, as POV-Ray's flat picture has them: limited to [0, 1]. In single
+/// precision where that is seen to do.
+void find_colors(const Subject& subject, const Evaluator& color, std::span<Hit> hits, Watch& watch);
 
 /// Lights the colours: a key light with a soft shadow and two without, placed as in povray_gen's
 /// lit picture, and a share of the sky by distances along the normal.

@@ -9,9 +9,10 @@ namespace sardf::rendering {
 
 namespace {
 
-constexpr int most_cells = 8;
-// A field that is hardly steeper than a distance gains nothing from finer cells.
-constexpr double steep = 1.1;
+// A field that is not steeper than a few distances gains less from finer cells than they cost.
+constexpr double steep = 3;
+// Where no bound is known cells are worth more.
+constexpr int most_unbounded_cells = 32;
 
 size_t index(int cells, const std::array<int, 3>& cell) {
   return (size_t(cell[2]) * cells + cell[1]) * cells + cell[0];
@@ -39,16 +40,27 @@ double largest_around(int cells, const std::vector<double>& of_cell, size_t i) {
 
 }  // namespace
 
-LocalSlopes::LocalSlopes(const Evaluator& field, const BoundingBox& box,
+LocalSlopes::LocalSlopes(const Evaluator& field, const BoundingBox& box, int most_cells,
                          const std::function<bool()>& go_on)
     : box_(box) {
   const double all = bound_of(field.slope(box).length);
-  levels_.push_back({1, infinity, {all}, {all}});
-  while (levels_.back().cells < most_cells && all > steep) {
-    Level finer = refined(field, levels_.back(), go_on);
-    // Where two halvings gain nothing there is nothing to gain.
-    levels_.push_back(std::move(finer));
+  levels_.push_back({1, infinity, {all}, {all}, {0}});
+  const auto is_wanting = [&](const Level& level) {
+    for (size_t i = 0; i < level.of_cell.size(); ++i) {
+      if (wants_more(level, i, most_cells)) return true;
+    }
+    return false;
+  };
+  walks_ = all == infinity;
+  while (is_wanting(levels_.back())) {
+    levels_.push_back(refined(field, levels_.back(), most_cells, go_on));
   }
+}
+
+bool LocalSlopes::wants_more(const Level& level, size_t cell, int most_cells) const {
+  const double slope = level.of_cell[cell];
+  if (level.empty[cell] || !(slope > steep)) return false;
+  return level.cells < (slope == infinity ? most_unbounded_cells : most_cells);
 }
 
 BoundingBox LocalSlopes::cell_box(const Level& level, const std::array<int, 3>& cell) const {
@@ -63,21 +75,25 @@ BoundingBox LocalSlopes::cell_box(const Level& level, const std::array<int, 3>& 
   return out;
 }
 
-LocalSlopes::Level LocalSlopes::refined(const Evaluator& field, const Level& coarse,
+LocalSlopes::Level LocalSlopes::refined(const Evaluator& field, const Level& coarse, int most_cells,
                                         const std::function<bool()>& go_on) const {
-  Level level{2 * coarse.cells, 0, {}, {}};
+  Level level{2 * coarse.cells, 0, {}, {}, {}};
   const Vec3 size = box_.size();
   level.reach = std::min({size[0], size[1], size[2]}) / level.cells;
   level.of_cell.resize(size_t(level.cells) * level.cells * level.cells);
+  level.empty.resize(level.of_cell.size());
   tbb::parallel_for(size_t(0), level.of_cell.size(), [&](size_t i) {
     const std::array<int, 3> at = place(level.cells, i);
-    const double known = coarse.of_cell[index(coarse.cells, {at[0] / 2, at[1] / 2, at[2] / 2})];
+    const size_t parent = index(coarse.cells, {at[0] / 2, at[1] / 2, at[2] / 2});
+    const double known = coarse.of_cell[parent];
     level.of_cell[i] = known;
-    if (!(known > steep) || !go_on()) return;
+    level.empty[i] = coarse.empty[parent];
+    if (!wants_more(coarse, parent, most_cells) || !go_on()) return;
     // Far from the surface steps are long enough. Neighbours of cells with surface count as near.
     const BoundingBox box = cell_box(level, at);
     if (std::abs(field.value(box.center())) > 1.5 * known * box.diagonal()) return;
     level.of_cell[i] = std::min(known, bound_of(field.slope(box).length));
+    if (level.of_cell[i] == infinity) level.empty[i] = field.interval(box).hi < 0;
   });
   level.around.resize(level.of_cell.size());
   for (size_t i = 0; i < level.around.size(); ++i) {
@@ -86,18 +102,41 @@ LocalSlopes::Level LocalSlopes::refined(const Evaluator& field, const Level& coa
   return level;
 }
 
+std::array<int, 3> LocalSlopes::cell_of(const Level& level, const Vec3& point) const {
+  std::array<int, 3> cell;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double share = (point[axis] - box_.lo[axis]) / (box_.hi[axis] - box_.lo[axis]);
+    cell[axis] = std::clamp(int(share * level.cells), 0, level.cells - 1);
+  }
+  return cell;
+}
+
+double LocalSlopes::clear_until(const Line& line, double t, double depth) const {
+  if (!walks_) return t;
+  const Level& finest = levels_.back();
+  // A ray crosses at most this number of cells.
+  for (int crossed = 0; crossed < 3 * finest.cells; ++crossed) {
+    const std::array<int, 3> cell = cell_of(finest, line.at(t));
+    const size_t i = index(finest.cells, cell);
+    const double leaves = stretch_in(line, cell_box(finest, cell)).end;
+    if (!(leaves > t)) return t;
+    if (!finest.empty[i]) {
+      const double reach = depth / (finest.of_cell[i] * std::sqrt(dot(line.along, line.along)));
+      return reach > 0 ? std::min(leaves, t + reach * (1 - 1e-9)) : t;
+    }
+    t = leaves;
+    depth = std::nan("");
+  }
+  return t;
+}
+
 double LocalSlopes::clear_radius(const Vec3& point, double depth) const {
   if (!(depth > 0)) return 0;
   // On the way to a point no farther than a cell's shortest side only the cell and its neighbours
   // are crossed.
   double radius = 0;
   for (const Level& level : levels_) {
-    std::array<int, 3> cell;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double share = (point[axis] - box_.lo[axis]) / (box_.hi[axis] - box_.lo[axis]);
-      cell[axis] = std::clamp(int(share * level.cells), 0, level.cells - 1);
-    }
-    const double slope = level.around[index(level.cells, cell)];
+    const double slope = level.around[index(level.cells, cell_of(level, point))];
     radius = std::max(radius, std::min(level.reach, depth / slope));
   }
   return radius * (1 - 1e-9);

@@ -49,10 +49,12 @@ struct Ray {
     met,     // `beyond` lies in the solid
     missed,
   };
+  int x, y;  // of its pixel, in the picture
   Line line;
-  double end;        // the ray leaves the bounds there
-  double clear;      // nothing of the solid lies before this depth
-  double tolerance;  // as depth
+  double per_length;  // depth by length along the ray
+  double end;         // the ray leaves the bounds there
+  double clear;       // nothing of the solid lies before this depth
+  double tolerance;   // as depth
   // The last place known to lie outside and its value (NaN: none); the place where the solid is
   // met, at last on its surface.
   double before, before_value, beyond, beyond_value;
@@ -64,8 +66,8 @@ struct Tile {
   int x, y, edge;
 };
 
-/// The rays of a tile's pixels, row by row, each as far as beams of rays are proven clear. The
-/// picture's edge cuts the tile.
+/// The rays of those of the tile's pixels that beams of rays do not prove to show nothing, as
+/// far as beams are proven clear. The picture's edge cuts the tile.
 std::vector<Ray> begin_rays(const Subject& subject, const Tile& tile, int width, int height,
                             Watch& watch);
 

@@ -85,7 +85,10 @@ void for_tiles(const Evaluator& solid, const BoundingBox& bounds, const RenderOp
   const int columns = (options.width + tile_edge - 1) / tile_edge;
   const int rows = (options.height + tile_edge - 1) / tile_edge;
   Watch watch(progress, size_t(columns) * rows);
-  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+  // oneTBB would complain on standard error of more threads than it has.
+  const int most_threads = tbb::this_task_arena::max_concurrency();
+  tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, most_threads)
+                                            : tbb::task_arena::automatic);
   arena.execute([&] {
     const Subject subject = make_subject(solid, bounds, options, watch);
     tbb::parallel_for(0, columns * rows, [&](int i) {

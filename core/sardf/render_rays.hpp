@@ -34,7 +34,7 @@ class Rays {
   Spread spread(double x, double y, double edge) const;
   /// The depths >= 0 between which the box lies.
   Stretch depths(const BoundingBox& box) const;
-  /// Unit vectors of the picture: to its right, its top, and away from the camera.
+  /// Unit vectors of the picture: to its right, its top, and into it.
   const std::array<Vec3, 3>& axes() const { return axes_; }
 
  private:

@@ -21,8 +21,8 @@ constexpr int shadow_steps = 48, sky_steps = 4;
 constexpr double shortest_step = 2e-3;
 
 Vec3 direction_to(const Rays& rays, const Vec3& place) {
-  const auto& [right, up, back] = rays.axes();
-  return normalized(place[0] * right + place[1] * up + place[2] * back);
+  const auto& [right, up, ahead] = rays.axes();
+  return normalized(place[0] * right + place[1] * up - place[2] * ahead);
 }
 
 // Values of the field at one point for each of some hits.

@@ -108,6 +108,7 @@ Ray make_ray(const Subject& subject, int x, int y, double clear) {
   if (ray.clear <= ray.end) {
     ray.clear = subject.slopes.clear_until(ray.line, ray.clear, std::nan(""));
   }
+  ray.trial = std::min(ray.clear + ray.tolerance, ray.end);
   ray.before = ray.before_value = std::nan("");
   ray.beyond = ray.beyond_value = infinity;
   return ray;

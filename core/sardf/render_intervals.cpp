@@ -49,6 +49,7 @@ void clear_stretches(const Subject& subject, Ray& ray, Watch& watch) {
     if (is_clear(subject, ray, end)) {
       ray.clear = end;
       length *= 2;
+      ray.trial = std::min(ray.clear + ray.tolerance, ray.end);
       if (!(ray.clear < ray.end)) ray.state = Ray::State::missed;
     } else {
       length *= 0.25;

@@ -132,12 +132,17 @@ double LocalSlopes::clear_until(const Line& line, double t, double depth) const 
 
 double LocalSlopes::clear_radius(const Vec3& point, double depth) const {
   if (!(depth > 0)) return 0;
-  // On the way to a point no farther than a cell's shortest side only the cell and its neighbours
-  // are crossed.
-  double radius = 0;
-  for (const Level& level : levels_) {
-    const double slope = level.around[index(level.cells, cell_of(level, point))];
-    radius = std::max(radius, std::min(level.reach, depth / slope));
+  double radius = depth / levels_[0].around[0];
+  if (levels_.size() > 1) {
+    // On the way to a point no farther than a cell's shortest side only the cell and its neighbours
+    // are crossed. A level's cells are those of the next one in pairs.
+    std::array<int, 3> cell = cell_of(levels_.back(), point);
+    for (size_t k = levels_.size() - 1; k > 0; --k) {
+      const Level& level = levels_[k];
+      const double slope = level.around[index(level.cells, cell)];
+      radius = std::max(radius, std::min(level.reach, depth / slope));
+      for (int& at : cell) at >>= 1;
+    }
   }
   return radius * (1 - 1e-9);
 }

@@ -55,6 +55,7 @@ struct Ray {
   double end;         // the ray leaves the bounds there
   double clear;       // nothing of the solid lies before this depth
   double tolerance;   // as depth
+  double trial;       // where the next sample is taken
   // The last place known to lie outside and its value (NaN: none); the place where the solid is
   // met, at last on its surface.
   double before, before_value, beyond, beyond_value;

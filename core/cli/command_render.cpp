@@ -27,6 +27,9 @@ struct Options {
 
 Depth depth_of(const Options& options) {
   const std::string ending = std::filesystem::path(options.output).extension();
+  if (ending == ".exr" && options.bits == 8) {
+    throw Error("--bits 8 needs a picture that ends in .png");
+  }
   if (ending == ".exr") return options.bits == 32 ? Depth::float32 : Depth::half16;
   if (ending != ".png") {
     throw Error("the picture ends in '" + ending + "'; .png and .exr are accepted", options.output);

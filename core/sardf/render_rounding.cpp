@@ -10,6 +10,8 @@ namespace {
 // tests of batches check it for every operation (tests/cpp/test_laws_batch.cpp).
 constexpr double operation_error = 2e-6;
 constexpr double coordinate_error = 0x1p-24;
+// Beyond these single precision, or the squares in it, may overflow or vanish.
+constexpr double largest_number = 1e18, smallest_size = 1e-12;
 
 // The inputs' errors come out enlarged as gradients do: Operation::slope bounds that when errors
 // stand in for lengths (mean value theorem), where the values lie within the intervals.
@@ -20,7 +22,8 @@ Slope with_error(const Operation& operation, const Slope* in) {
     largest = std::max(largest, in[k].value.magnitude());
   }
   for (const double number : operation.numbers()) largest = std::max(largest, std::abs(number));
-  out.length = rounded_up(out.length + operation_error * largest);
+  out.length =
+      largest < largest_number ? rounded_up(out.length + operation_error * largest) : infinity;
   out.partial.fill(Interval::all());  // nothing is known of the errors' directions
   // The operations that follow see rounded values.
   out.value = {rounded_down(out.value.lo - out.length), rounded_up(out.value.hi + out.length)};
@@ -30,6 +33,7 @@ Slope with_error(const Operation& operation, const Slope* in) {
 }  // namespace
 
 double single_precision_error(const Evaluator& evaluator, const BoundingBox& box) {
+  if (!(box.diagonal() > smallest_size)) return infinity;
   const Tape& tape = evaluator.tape();
   std::vector<Slope> registers(tape.registers());
   for (int axis = 0; axis < 3; ++axis) {

@@ -115,9 +115,11 @@ std::vector<double> sky_shares(const Subject& subject, std::span<const Hit> hits
   return shares;
 }
 
-// Colours in single precision are taken on both sides of the surface, so far from it along the ray,
-// in diagonals. Where a colour changes abruptly on the surface, or rounding tells, the two differ.
-constexpr double beside = 1e-5, equal_colors = 0.25 / 255;
+// How far from the surface, along the ray and in diagonals, normals and colours are taken.
+constexpr double beside = 1e-5;
+// Colours in single precision are taken on both sides of the surface. Where a colour changes
+// abruptly on the surface, or rounding tells, the two differ.
+constexpr double equal_colors = 0.25 / 255;
 // Coordinates in single precision tell points apart well enough up to so many diagonals.
 constexpr double far = 16;
 
@@ -167,13 +169,17 @@ void find_single_colors(const Subject& subject, const Evaluator& color, std::vec
 }  // namespace
 
 void find_normals(const Subject& subject, std::span<Hit> hits, Watch& watch) {
+  // On the surface itself the direction to the nearest point of a curve or mesh is all rounding.
+  const double aside = beside * subject.bounds.diagonal();
   thread_local Block<double> block;
   thread_local double slopes[3][Block<double>::capacity];
   double* const gradient[3] = {slopes[0], slopes[1], slopes[2]};
   for (size_t first = 0; first < hits.size(); first += block.capacity) {
     watch.check();
     const size_t n = std::min(block.capacity, hits.size() - first);
-    for (size_t i = 0; i < n; ++i) block.set(i, hits[first + i].at);
+    for (size_t i = 0; i < n; ++i) {
+      block.set(i, hits[first + i].at + aside * hits[first + i].toward);
+    }
     subject.solid.gradient_block(block.xyz[0], block.xyz[1], block.xyz[2], n, block.value,
                                  gradient);
     for (size_t i = 0; i < n; ++i) {
@@ -203,19 +209,23 @@ void find_colors(const Subject& subject, const Evaluator& color, std::span<Hit> 
   }
 }
 
-void light(const Subject& subject, std::span<Hit> hits, Watch& watch) {
+void light(const Subject& subject, std::span<Hit> shown, Watch& watch) {
+  std::vector<Hit> hits(shown.begin(), shown.end());
+  for (Hit& hit : hits) {
+    if (hit.normal == Vec3{}) hit.normal = hit.toward;
+  }
   const Vec3 key = direction_to(subject.rays, key_place);
   const std::vector<double> lit = key_shares(subject, hits, key, watch);
   const std::vector<double> sky = sky_shares(subject, hits, watch);
   for (size_t i = 0; i < hits.size(); ++i) {
-    Hit& hit = hits[i];
+    const Hit& hit = hits[i];
     const auto facing = [&](const Vec3& to) { return std::max(0.0, dot(hit.normal, to)); };
     const double fills = first_strength * facing(direction_to(subject.rays, first_fill)) +
                          second_strength * facing(direction_to(subject.rays, second_fill));
     const double all =
         sky[i] * (ambient + diffuse * fills) + diffuse * key_strength * lit[i] * facing(key);
     const double shine = std::pow(facing(normalized(key + hit.toward)), shininess);
-    for (double& channel : hit.color) {
+    for (double& channel : shown[i].color) {
       channel = all * channel + specular * key_strength * lit[i] * shine;
     }
   }

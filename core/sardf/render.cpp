@@ -67,9 +67,13 @@ Subject make_subject(const Evaluator& solid, const BoundingBox& bounds,
   return subject;
 }
 
-std::vector<Ray> cast(const Subject& subject, const Tile& tile, const RenderOptions& options,
-                      Watch& watch) {
-  std::vector<Ray> rays = begin_rays(subject, tile, options.width, options.height, watch);
+// The rays of the tile's pixels that may show something, each at its end; until the thread's next
+// tile.
+std::span<const Ray> cast(const Subject& subject, const Tile& tile, const RenderOptions& options,
+                          Watch& watch) {
+  // Large enough that every tile would have the system map new pages for it.
+  thread_local std::vector<Ray> rays;
+  begin_rays(subject, tile, options.width, options.height, rays, watch);
   if (subject.single) march<float>(subject, rays, single_steps, watch);
   march<double>(subject, rays, double_steps, watch);
   march_by_intervals(subject, rays, watch);
@@ -111,9 +115,11 @@ class Painter {
   }
 
   void paint(const Subject& subject, const Tile& tile, Watch& watch) const {
-    const std::vector<Ray> rays = cast(subject, tile, options_, watch);
+    const std::span<const Ray> rays = cast(subject, tile, options_, watch);
     std::vector<Hit> hits;
     std::vector<const Ray*> met;
+    hits.reserve(rays.size());
+    met.reserve(rays.size());
     for (const Ray& ray : rays) {
       if (ray.state != Ray::State::met) continue;
       hits.push_back({ray.line.at(ray.beyond), -ray.per_length * ray.line.along});

@@ -116,8 +116,8 @@ Ray make_ray(const Subject& subject, int x, int y, double clear) {
 
 }  // namespace
 
-std::vector<Ray> begin_rays(const Subject& subject, const Tile& tile, int width, int height,
-                            Watch& watch) {
+void begin_rays(const Subject& subject, const Tile& tile, int width, int height,
+                std::vector<Ray>& rays, Watch& watch) {
   const Stretch depths = subject.rays.depths(subject.bounds);
   const double middle = 0.5 * tile.edge;
   std::vector<Beam> beams{{tile.x + middle, tile.y + middle, double(tile.edge), depths.begin}};
@@ -130,7 +130,7 @@ std::vector<Ray> begin_rays(const Subject& subject, const Tile& tile, int width,
     if (beams.empty() || beams[0].edge <= smallest_edge) break;
     beams = split_beams(beams, depths.end);
   }
-  std::vector<Ray> rays;
+  rays.clear();
   for (const Beam& beam : beams) {
     if (beam.clear >= depths.end) continue;
     const int left = int(beam.x - 0.5 * beam.edge), top = int(beam.y - 0.5 * beam.edge);
@@ -143,7 +143,6 @@ std::vector<Ray> begin_rays(const Subject& subject, const Tile& tile, int width,
       }
     }
   }
-  return rays;
 }
 
 }  // namespace sardf::rendering

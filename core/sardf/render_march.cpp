@@ -72,6 +72,7 @@ void march(const Subject& subject, std::span<Ray> rays, int most_steps, Watch& w
   constexpr bool decides = std::is_same_v<T, double>;
   const double error = decides ? subject.error_double : subject.error_single;
   std::vector<Ray*> active;
+  active.reserve(rays.size());
   for (Ray& ray : rays) {
     if (decides && ray.state == State::unsure) ray.state = State::on_its_way;
     if (ray.state == State::on_its_way) active.push_back(&ray);

@@ -67,6 +67,7 @@ void use_value(Bracket& b, double value, double diagonal, int step) {
 
 void find_roots(const Subject& subject, std::span<Ray> rays, Watch& watch) {
   std::vector<Bracket> brackets;
+  brackets.reserve(rays.size());
   for (Ray& ray : rays) {
     if (ray.state == Ray::State::met) brackets.push_back(bracket_of(ray));
   }

@@ -209,8 +209,8 @@ void find_colors(const Subject& subject, const Evaluator& color, std::span<Hit> 
   }
 }
 
-void light(const Subject& subject, std::span<Hit> shown, Watch& watch) {
-  std::vector<Hit> hits(shown.begin(), shown.end());
+void light(const Subject& subject, std::span<Hit> colored, Watch& watch) {
+  std::vector<Hit> hits(colored.begin(), colored.end());
   for (Hit& hit : hits) {
     if (hit.normal == Vec3{}) hit.normal = hit.toward;
   }
@@ -225,7 +225,7 @@ void light(const Subject& subject, std::span<Hit> shown, Watch& watch) {
     const double all =
         sky[i] * (ambient + diffuse * fills) + diffuse * key_strength * lit[i] * facing(key);
     const double shine = std::pow(facing(normalized(key + hit.toward)), shininess);
-    for (double& channel : shown[i].color) {
+    for (double& channel : colored[i].color) {
       channel = all * channel + specular * key_strength * lit[i] * shine;
     }
   }

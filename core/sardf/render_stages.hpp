@@ -67,10 +67,10 @@ struct Tile {
   int x, y, edge;
 };
 
-/// The rays of those of the tile's pixels that beams of rays do not prove to show nothing, as
-/// far as beams are proven clear. The picture's edge cuts the tile.
-std::vector<Ray> begin_rays(const Subject& subject, const Tile& tile, int width, int height,
-                            Watch& watch);
+/// Replaces `rays` by those of the tile's pixels that beams of rays do not prove to show nothing,
+/// as far as beams are proven clear. The picture's edge cuts the tile.
+void begin_rays(const Subject& subject, const Tile& tile, int width, int height,
+                std::vector<Ray>& rays, Watch& watch);
 
 /// Moves on those rays that are on their way, at most `most_steps` steps each, until each is
 /// unsure, has met the solid or missed it. In double no ray becomes unsure, and the unsure go on.

@@ -30,7 +30,7 @@ struct RenderOptions {
   int height = 480;
   RenderLook look = RenderLook::flat;
   /// Scene units, positive: no ray steps over a stretch of the solid that is longer along the ray.
-  /// None: 1e-4 of the diagonal of the scene's bounds.
+  /// None: 1e-4 of the diagonal of the scene's bounds. Less than 1e-14 of a depth counts as that.
   std::optional<double> tolerance;
   /// Linear; alpha is 1 everywhere then. None: nothing is seen behind the solid, alpha 0.
   std::optional<Vec3> background;

@@ -11,6 +11,8 @@ namespace {
 // A beam's steps end when they are shorter than this share of its radius; smaller beams go on.
 constexpr double shortest_step = 0.7;
 constexpr int most_steps = 64;
+// By depth: less would be lost in its roundings.
+constexpr double least_tolerance = 1e-14;
 constexpr int split = 4;  // along each side
 constexpr int smallest_edge = 8;
 
@@ -101,9 +103,9 @@ Ray make_ray(const Subject& subject, int x, int y, double clear) {
   ray.y = y;
   ray.line = subject.rays.through(x + 0.5, y + 0.5);
   ray.per_length = 1 / std::sqrt(dot(ray.line.along, ray.line.along));
-  ray.tolerance = subject.tolerance * ray.per_length;
   const Stretch in_box = stretch_in(ray.line, subject.bounds);
   ray.end = in_box.end;
+  ray.tolerance = std::max(subject.tolerance * ray.per_length, least_tolerance * ray.end);
   ray.clear = std::max(clear, in_box.begin);
   if (ray.clear <= ray.end) {
     ray.clear = subject.slopes.clear_until(ray.line, ray.clear, std::nan(""));

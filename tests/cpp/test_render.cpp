@@ -265,6 +265,25 @@ TEST(Render, BlendsOfTheFirstPaper) {
   EXPECT_GT(met, 4000);
 }
 
+TEST(Render, TolerancesBelowAllRoundings) {
+  const Expression block = box({20, 12, 8});
+  const BoundingBox bounds = certified_bounds(Evaluator(block));
+  RenderOptions options = options_of(bounds);
+  options.width = 40;
+  options.height = 30;
+  options.tolerance = 1e-300;
+  const std::vector<double> depths = render_depths(Evaluator(block), bounds, options);
+  for (int i = 0; i < options.width * options.height; ++i) {
+    const TestRay ray = ray_of(options, i % options.width, i / options.width);
+    const Inside in = in_box(ray, {10, 6, 4});
+    const bool crossed = in.to >= in.from;
+    ASSERT_EQ(depths[size_t(i)] < infinity, crossed) << i;
+    if (crossed) {
+      ASSERT_NEAR(depths[size_t(i)], in.from, 1e-7) << i;
+    }
+  }
+}
+
 TEST(Render, CameraInsideTheSolidOrBehindIt) {
   const Expression ball = sphere(2);
   const BoundingBox bounds = certified_bounds(Evaluator(ball));

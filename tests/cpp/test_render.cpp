@@ -186,6 +186,35 @@ TEST(Render, ThinShellSeenAlongItsWall) {
   EXPECT_GT(long_ways, 50);
 }
 
+// Ever higher thin fins across a floor, seen along the floor. A ray over the lower fins comes no
+// nearer to what is below it, and long steps are tempting.
+TEST(Render, ThinFinsBehindEachOther) {
+  std::vector<std::pair<Vec3, Vec3>> boxes{{{10, 8, 1}, {0, 0, -0.5}}};
+  double x = -4.5;
+  for (int k = 1; k <= 18; ++k) {
+    boxes.push_back({{0.004, 8, 0.15 * k}, {x, 0, 0.075 * k}});
+    x += 0.31 + 0.23 * std::sin(1.7 * k);
+  }
+  Expression field = box(boxes[0].first, boxes[0].second);
+  for (size_t i = 1; i < boxes.size(); ++i) {
+    field = joined(field, box(boxes[i].first, boxes[i].second));
+  }
+  const BoundingBox bounds{{-5.1, -4.1, -1.1}, {5.1, 4.1, 2.8}};
+  const auto form = [&](const TestRay& ray) {
+    Inside first;
+    for (const auto& [size, center] : boxes) {
+      const Inside in = in_box({ray.from - center, ray.along}, 0.5 * size);
+      if (in.to >= in.from && in.from < first.from) first = in;
+    }
+    return first;
+  };
+  for (const Vec3& direction : {Vec3{1, 0.01, -0.004}, Vec3{1, 0.02, 0.003}}) {
+    RenderOptions options = orthographic(options_of(bounds, direction), 11);
+    options.tolerance = 1e-3;
+    expect_closed_form(field, bounds, options, form);
+  }
+}
+
 // Against samples so dense that no stretch longer than the tolerance lies between them.
 void expect_no_stretch_missed(const std::string& text, const BoundingBox& bounds,
                               int least_met = 100) {

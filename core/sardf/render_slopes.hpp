@@ -12,8 +12,8 @@ namespace sardf::rendering {
 
 /// Lipschitz bounds of a field's first output over the cells of grids of 1, 2, 4, ... cells along
 /// each side of a box. A finer grid is made only where the coarser one's bounds are large, and
-/// where the solid (field >= 0) may be near. Cells without any bound are proven empty of the solid
-/// instead, where they can be.
+/// where the solid (field >= 0) may be near. Cells without a bound that helps are proven empty of
+/// the solid instead, where they can be.
 class LocalSlopes {
  public:
   /// `most_cells`: along each side. `go_on` is asked between cells; false ends the work early, with

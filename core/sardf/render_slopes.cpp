@@ -11,7 +11,7 @@ namespace {
 
 // A field that is not steeper than a few distances gains less from finer cells than they cost.
 constexpr double steep = 3;
-// Where no bound is known, or one with which steps would be tiny, cells are worth more.
+// Of a field without a bound, cells with no bound or one with which steps are tiny are worth more.
 constexpr double useless = 50;
 constexpr int most_useless_cells = 32;
 
@@ -52,7 +52,7 @@ LocalSlopes::LocalSlopes(const Evaluator& field, const BoundingBox& box, int mos
     }
     return false;
   };
-  walks_ = all > useless;
+  walks_ = all == infinity;
   while (is_wanting(levels_.back())) {
     levels_.push_back(refined(field, levels_.back(), most_cells, go_on));
   }
@@ -61,7 +61,7 @@ LocalSlopes::LocalSlopes(const Evaluator& field, const BoundingBox& box, int mos
 bool LocalSlopes::wants_more(const Level& level, size_t cell, int most_cells) const {
   const double slope = level.of_cell[cell];
   if (level.empty[cell] || !(slope > steep)) return false;
-  return level.cells < (slope > useless ? most_useless_cells : most_cells);
+  return level.cells < (walks_ && slope > useless ? most_useless_cells : most_cells);
 }
 
 BoundingBox LocalSlopes::cell_box(const Level& level, const std::array<int, 3>& cell) const {
@@ -94,7 +94,7 @@ LocalSlopes::Level LocalSlopes::refined(const Evaluator& field, const Level& coa
     const BoundingBox box = cell_box(level, at);
     if (std::abs(field.value(box.center())) > 1.5 * known * box.diagonal()) return;
     level.of_cell[i] = std::min(known, bound_of(field.slope(box).length));
-    if (level.of_cell[i] > useless) level.empty[i] = field.interval(box).hi < 0;
+    if (walks_ && level.of_cell[i] > useless) level.empty[i] = field.interval(box).hi < 0;
   });
   level.around.resize(level.of_cell.size());
   for (size_t i = 0; i < level.around.size(); ++i) {

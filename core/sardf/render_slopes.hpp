@@ -12,8 +12,8 @@ namespace sardf::rendering {
 
 /// Lipschitz bounds of a field's first output over the cells of grids of 1, 2, 4, ... cells along
 /// each side of a box. A finer grid is made only where the coarser one's bounds are large, and
-/// where the solid (field >= 0) may be near. Cells without a bound that helps are proven empty of
-/// the solid instead, where they can be.
+/// where the solid (field >= 0) may be near. If the whole box has no bound, cells without one that
+/// helps are proven empty of the solid instead, where they can be.
 class LocalSlopes {
  public:
   /// `most_cells`: along each side. `go_on` is asked between cells; false ends the work early, with
@@ -46,7 +46,7 @@ class LocalSlopes {
 
   BoundingBox box_;
   std::vector<Level> levels_;
-  bool walks_ = false;  // whether the finest level's cells tell more than balls
+  bool walks_ = false;  // the box has no bound: cells by themselves tell more than balls
 };
 
 }  // namespace sardf::rendering

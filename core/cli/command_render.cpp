@@ -90,6 +90,11 @@ void add_render(CLI::App& app) {
                    "No stretch of the solid that is longer along a ray is missed; scene units; "
                    "else 1e-4 of the diagonal")
       ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--samples", options->render.samples,
+                   "Rays along each side of a pixel; more smooth edges")
+      ->check(CLI::Range(1, 8))
+      ->capture_default_str();
   command->add_flag("--depth", options->render.depth, "Also the channel Z: depth along the view");
   command->add_flag("--normals", options->render.normals,
                     "Also the channels NX, NY, NZ: the outward normal");

@@ -120,7 +120,7 @@ Camera camera_from(const Scene& scene, const py::object& camera, int width, int 
 py::array_t<float> render_scene(const Scene& scene, int width, int height, const std::string& look,
                                 const py::object& camera, std::optional<double> tolerance,
                                 std::optional<Vec3> background, bool depth, bool normals,
-                                int threads, py::object callable) {
+                                int samples, int threads, py::object callable) {
   RenderOptions options;
   options.look = render_look(look);
   options.camera = camera_from(scene, camera, width, height);
@@ -130,6 +130,7 @@ py::array_t<float> render_scene(const Scene& scene, int width, int height, const
   options.background = background;
   options.depth = depth;
   options.normals = normals;
+  options.samples = samples;
   options.threads = threads;
   PythonProgress progress(std::move(callable));
   return to_array(
@@ -245,15 +246,17 @@ void bind_scenes(py::module_& m) {
       .def("render", &render_scene, py::arg("width") = 640, py::arg("height") = 480,
            py::arg("look") = "shaded", py::arg("camera") = py::none(),
            py::arg("tolerance") = py::none(), py::arg("background") = py::none(),
-           py::arg("depth") = false, py::arg("normals") = false, py::arg("threads") = 0,
-           py::arg("progress") = py::none(),
+           py::arg("depth") = false, py::arg("normals") = false, py::arg("samples") = 1,
+           py::arg("threads") = 0, py::arg("progress") = py::none(),
            "A picture by certified ray casting: float32 (height, width, 4), row 0 at the top, "
            "linear colour times alpha, then alpha. look: shaded, flat (the colours alone) or "
            "normals (0.5 + 0.5 n). camera: as camera() gives it. tolerance (scene units): no "
            "stretch of the solid that is longer along a ray is missed; none: 1e-4 of the bounds' "
            "diagonal. background: linear (r, g, b); none: alpha is 0 there. depth: one channel "
            "more, the depth along the view in scene units, inf where nothing is. normals: three "
-           "channels more, the outward unit normal. threads: at most so many, 0: all; the picture "
+           "channels more, the outward unit normal. samples: rays along each side of a pixel, 1 to "
+           "8, "
+           "more smooth edges. threads: at most so many, 0: all; the picture "
            "does not depend on it.")
       .def("with_blend", &with_blend, py::arg("blend"),
            "The scene with every union, intersection and difference joined by `blend` in place of "

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "sardf/error.hpp"
+#include "sardf/render_average.hpp"
 #include "sardf/render_rounding.hpp"
 #include "sardf/render_shading.hpp"
 #include "sardf/short_number.hpp"
@@ -17,7 +18,7 @@ namespace rendering {
 
 namespace {
 
-constexpr int tile_edge = 32, most_pixels = 16384;
+constexpr int tile_edge = 32, most_pixels = 16384, most_samples = 8;
 constexpr double default_tolerance = 1e-4;
 // Above this error, in diagonals, beams and steps in single precision stop too early to be of use.
 constexpr double most_single_error = 1e-3;
@@ -31,6 +32,12 @@ void check_options(const RenderOptions& options, const BoundingBox& bounds) {
     throw Error("the picture has " + std::to_string(options.width) + " x " +
                 std::to_string(options.height) + " pixels; 1 to " + std::to_string(most_pixels) +
                 " are accepted for each");
+  }
+  if (options.samples < 1 || options.samples > most_samples ||
+      std::max(options.width, options.height) * options.samples > most_pixels) {
+    throw Error("the samples along a pixel's side are " + std::to_string(options.samples) +
+                "; 1 to " + std::to_string(most_samples) + " are accepted, and " +
+                std::to_string(most_pixels) + " along each side of the picture");
   }
   if (options.tolerance && !(*options.tolerance > 0 && *options.tolerance < infinity)) {
     throw Error("the tolerance is " + short_number(*options.tolerance) +
@@ -179,6 +186,17 @@ RenderLook render_look(const std::string& name) {
 }
 
 RenderedPicture render(const Scene& scene, const RenderOptions& options, const Progress& progress) {
+  if (options.samples > 1) {
+    rendering::check_options(options, scene.bounds());
+    RenderOptions fine = options;
+    fine.samples = 1;
+    fine.width *= options.samples;
+    fine.height *= options.samples;
+    RenderedPicture smooth = render(scene, fine, progress);
+    smooth.image =
+        rendering::averaged(smooth.image, options.samples, options.depth, options.normals);
+    return smooth;
+  }
   RenderedPicture picture;
   picture.channels = {"R", "G", "B", "A"};
   if (options.depth) picture.channels.push_back("Z");

@@ -28,6 +28,8 @@ struct RenderOptions {
   Camera camera;
   int width = 640;  ///< pixels, 1 to 16384
   int height = 480;
+  /// Rays along each side of a pixel, 1 to 8: more smooth the picture's edges. Each holds memory.
+  int samples = 1;
   RenderLook look = RenderLook::flat;
   /// Scene units, positive: no ray steps over a stretch of the solid that is longer along the ray.
   /// None: 1e-4 of the diagonal of the scene's bounds. Less than 1e-14 of a depth counts as that.
@@ -50,8 +52,9 @@ struct RenderedPicture {
 };
 
 /// Renders what the scene shows, its sections cut away. A pixel shows the first point of the solid
-/// on the ray through its centre: one sample, so alpha is 0 or 1 without a background. Throws Error
-/// for options out of their ranges and for a camera whose axes vanish; Cancelled.
+/// on the ray through its centre, so that alpha is 0 or 1 without a background; with more samples
+/// the mean of its parts, the least of their depths and the mean direction of their normals. Throws
+/// Error for options out of their ranges and for a camera whose axes vanish; Cancelled.
 RenderedPicture render(const Scene& scene, const RenderOptions& options,
                        const Progress& progress = {});
 

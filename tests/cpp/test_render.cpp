@@ -389,6 +389,39 @@ TEST(Render, LooksAndBackgrounds) {
   EXPECT_LT(top[1], 0.2);
 }
 
+// A pixel of several samples is the mean of the pixels of a finer picture.
+TEST(Render, SeveralSamplesOfAPixel) {
+  const Scene scene = scene_of("");
+  RenderOptions options = options_of(padded({2, 2, 2}));
+  options.depth = options.normals = true;
+  options.samples = 3;
+  const RenderedPicture smooth = render(scene, options);
+  ASSERT_EQ(smooth.image.width, options.width);
+  options.samples = 1;
+  options.width *= 3;
+  options.height *= 3;
+  const RenderedPicture fine = render(scene, options);
+  int mixed = 0;
+  for (int y = 0; y < smooth.image.height; ++y) {
+    for (int x = 0; x < smooth.image.width; ++x) {
+      float alpha = 0, depth = float(infinity);
+      for (int k = 0; k < 9; ++k) {
+        const float* part = fine.image.at(3 * x + k % 3, 3 * y + k / 3);
+        alpha += part[3] / 9;
+        depth = std::min(depth, part[4]);
+      }
+      const float* pixel = smooth.image.at(x, y);
+      ASSERT_NEAR(pixel[3], alpha, 1e-6);
+      ASSERT_EQ(pixel[4], depth);
+      ASSERT_NEAR(pixel[0], alpha, 1e-6);  // red, premultiplied
+      const double length = std::hypot(pixel[5], pixel[6], pixel[7]);
+      ASSERT_NEAR(length, alpha > 0 ? 1 : 0, 1e-6);
+      mixed += alpha > 0.05f && alpha < 0.95f ? 1 : 0;
+    }
+  }
+  EXPECT_GT(mixed, 100);
+}
+
 // The key light comes from the camera's upper left: a ball above a plate darkens it to its right.
 TEST(Render, ShadowsFallAwayFromTheKeyLight) {
   const Scene scene(parse_scene(R"({"sardf": 1, "solid": {"union": {"of": [
@@ -474,6 +507,9 @@ TEST(Render, RefusesWhatItCannotRender) {
   options.tolerance = std::nan("");
   EXPECT_THAT(error_of(options), HasSubstr("a positive length"));
   options = options_of(padded({1, 1, 1}));
+  options.samples = 9;
+  EXPECT_THAT(error_of(options), HasSubstr("pixel's side are 9; 1 to 8 are accepted"));
+  options.samples = 1;
   options.threads = -2;
   EXPECT_THAT(error_of(options), HasSubstr("threads is -2"));
   EXPECT_THROW(

@@ -13,7 +13,7 @@ from sardf import _image
 ROOT = Path(__file__).resolve().parents[2]
 COMMAND = Path(sys.executable).with_name("sardf")
 WIDTH, HEIGHT = 160, 120
-# A graded bushing cut open, a twisted cutter of diamond grains, and steep blends.
+# A graded bushing cut open, a cutter of sharp edges, and the thin walls of a gyroid.
 COMPARED = ["cad_plate_cut", "diamond_cutter", "gyroid_sandwich"]
 
 

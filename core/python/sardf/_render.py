@@ -15,8 +15,8 @@ def render(scene, path=None, size=(640, 480), look="shaded", *, bits=16, **optio
     look: "shaded", "flat" (the colours alone, unlit) or "normals" (0.5 + 0.5 n).
     bits: of each channel in the file: 8 or 16 of .png, 16 or 32 of .exr.
     options: camera, tolerance, background, depth, normals, samples, threads and progress, as
-        Scene.render takes them. A lit picture has a background unless `background=None` is given. A .png has no
-        place for depth and normals: they are in the array alone.
+        Scene.render takes them. A lit picture has a background unless `background=None` is
+        given. A .png has no place for depth and normals: they are in the array alone.
 
     Returns float32 (height, width, channels), row 0 at the top, linear: colour times alpha, alpha,
     then depth (1) and normals (3) where they are asked for. Raises Error for arguments that are not

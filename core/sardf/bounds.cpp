@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "sardf/error.hpp"
 #include "sardf/short_number.hpp"
+#include "sardf/shorten.hpp"
 
 namespace sardf {
 
@@ -24,6 +26,8 @@ constexpr size_t most_cells = 50'000;
 constexpr int proof_boxes = 800;
 constexpr double tightness = 1e-4;
 constexpr double padding = 1e-4;
+// A program of this many instructions is not shortened: it costs less than finding out.
+constexpr size_t short_program = 8;
 
 Error unbounded_error() {
   return Error(
@@ -43,9 +47,25 @@ double longest_side(const BoundingBox& box) {
   return std::max({size[0], size[1], size[2]});
 }
 
+// A box with the field's evaluator, which is shortened for it (shorten.hpp).
+struct Cell {
+  BoundingBox box;
+  std::shared_ptr<const Evaluator> field;
+};
+
+// The cell with a shorter program, where there is one: for the parts of a box.
+std::shared_ptr<const Evaluator> shortened(const Cell& cell) {
+  if (cell.field->tape().instructions().size() <= short_program) return cell.field;
+  auto shorter = std::make_shared<const Evaluator>(Shortening(*cell.field, cell.box).shortened());
+  const bool is_shorter =
+      shorter->tape().instructions().size() < cell.field->tape().instructions().size();
+  return is_shorter ? shorter : cell.field;
+}
+
 class Search {
  public:
-  Search(const Evaluator& field, const Progress& progress) : field_(field), progress_(progress) {
+  Search(const Evaluator& field, const Progress& progress)
+      : field_(std::make_shared<const Evaluator>(field)), progress_(progress) {
     const Vec3 corner{farthest, farthest, farthest};
     all_ = {-1.0 * corner, corner};
     slope_ = field.slope(all_).length;
@@ -70,16 +90,17 @@ class Search {
   /// Whether the solid is proven to have no point in the box.
   bool is_empty(const BoundingBox& box, int most_boxes) const {
     const double least_side = 0.1 * tightness * hull_diagonal_;
-    std::vector<BoundingBox> open{box};
+    std::vector<Cell> open{{box, field_}};
     for (int looked_at = 0; !open.empty(); ++looked_at) {
-      const BoundingBox part = open.back();
+      const Cell part = std::move(open.back());
       open.pop_back();
-      const double middle = field_.value(part.center());
+      const double middle = part.field->value(part.box.center());
       if (middle >= 0 || looked_at >= most_boxes) return false;
+      if (looked_at % 64 == 63) report(0.7);
       if (is_negative(part, middle)) continue;
-      if (longest_side(part) < least_side) return false;
-      const auto halves = split(part);
-      open.insert(open.end(), halves.begin(), halves.end());
+      if (longest_side(part.box) < least_side) return false;
+      const auto field = shortened(part);
+      for (const BoundingBox& half : split(part.box)) open.push_back({half, field});
     }
     return true;
   }
@@ -96,11 +117,12 @@ class Search {
   // Whether the field, of which the value in the middle is given, is negative all over the box. The
   // Lipschitz bound tells it without the cost of an interval; 4500 roundings of the largest number
   // are set aside for the value.
-  bool is_negative(const BoundingBox& box, double middle) const {
+  bool is_negative(const Cell& cell, double middle) const {
+    const BoundingBox& box = cell.box;
     const double rounding =
         1e-12 * (std::max({norm(box.lo), norm(box.hi), constants_}) + std::abs(middle));
     const double reach = slope_ * (0.5 * box.diagonal() * (1 + 1e-12) + rounding) + rounding;
-    return middle < -reach || field_.interval(box).hi < 0;
+    return middle < -reach || cell.field->interval(box).hi < 0;
   }
 
   static std::array<BoundingBox, 2> split(const BoundingBox& box) {
@@ -113,37 +135,40 @@ class Search {
 
   // Halves cells until the hull of those that may hold points of the solid is resolved by a few.
   BoundingBox coarse_hull() const {
-    std::vector<BoundingBox> cells{all_};
+    std::vector<Cell> cells{{all_, field_}};
     for (int level = 1; level <= last_level; ++level) {
       report(0.4 * level / last_level);
       cells = remaining_children(cells);
       if (cells.empty()) throw Error("the solid is empty: its field is negative everywhere");
-      BoundingBox hull = cells[0];
-      for (const BoundingBox& cell : cells) include(hull, cell);
+      BoundingBox hull = cells[0].box;
+      for (const Cell& cell : cells) include(hull, cell.box);
       const double reach =
           std::max({-hull.lo[0], -hull.lo[1], -hull.lo[2], hull.hi[0], hull.hi[1], hull.hi[2]});
       if (level >= unbounded_level && reach >= farthest) throw unbounded_error();
       if (cells.size() > most_cells) throw unbounded_error();
-      if (level > unbounded_level && longest_side(hull) >= coarse_cells * longest_side(cells[0])) {
+      if (level > unbounded_level &&
+          longest_side(hull) >= coarse_cells * longest_side(cells[0].box)) {
         return hull;
       }
     }
     throw Error("the solid is empty or a single point: it has no volume");
   }
 
-  std::vector<BoundingBox> remaining_children(const std::vector<BoundingBox>& cells) const {
-    std::vector<BoundingBox> children;
+  std::vector<Cell> remaining_children(const std::vector<Cell>& cells) const {
+    std::vector<Cell> children;
     size_t looked_at = 0;
-    for (const BoundingBox& cell : cells) {
-      if (++looked_at % 256 == 0) report(0.2);
-      const Vec3 middle = cell.center();
+    for (const Cell& cell : cells) {
+      if (++looked_at % 16 == 0) report(0.2);
+      const Vec3 middle = cell.box.center();
+      const auto field = shortened(cell);
       for (int k = 0; k < 8; ++k) {
-        BoundingBox child;
+        Cell child{{}, field};
         for (int axis = 0; axis < 3; ++axis) {
-          child.lo[axis] = k >> axis & 1 ? middle[axis] : cell.lo[axis];
-          child.hi[axis] = k >> axis & 1 ? cell.hi[axis] : middle[axis];
+          child.box.lo[axis] = k >> axis & 1 ? middle[axis] : cell.box.lo[axis];
+          child.box.hi[axis] = k >> axis & 1 ? cell.box.hi[axis] : middle[axis];
         }
-        if (!is_negative(child, field_.value(child.center()))) children.push_back(child);
+        const double value = field->value(child.box.center());
+        if (!is_negative(child, value)) children.push_back(std::move(child));
       }
     }
     return children;
@@ -167,7 +192,7 @@ class Search {
     }
   }
 
-  const Evaluator& field_;
+  std::shared_ptr<const Evaluator> field_;
   const Progress& progress_;
   BoundingBox all_;
   double slope_;

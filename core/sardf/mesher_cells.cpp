@@ -12,11 +12,6 @@ constexpr int samples = side * side * side;
 
 constexpr int sample_index(int x, int y, int z) { return x + side * (y + side * z); }
 
-uint64_t key(const Index3& block) {
-  return uint64_t(uint32_t(block[0])) | uint64_t(uint32_t(block[1])) << 21 |
-         uint64_t(uint32_t(block[2])) << 42;
-}
-
 struct Sampled {
   Index3 block{};
   Cells::Block occupied;
@@ -164,7 +159,7 @@ uint32_t Cells::find(const Index3& cell) const {
   return block.first[layer] + uint32_t(__builtin_popcountll(before));
 }
 
-Cells find_cells(const Field& field, const Grid& grid, size_t memory_limit, Work& work) {
+Cells find_cells(Field& field, const Grid& grid, size_t memory_limit, Work& work) {
   std::vector<Index3> blocks = find_blocks(field, grid, memory_limit, work);
   std::unordered_map<uint64_t, bool> known;
   for (const Index3& block : blocks) known[key(block)] = true;

@@ -26,12 +26,46 @@ T clip_value(const BoundingBox& bounds, const Points<T>& points, size_t i, int& 
   return nearest;
 }
 
+bool contains(const BoundingBox& box, const Vec3& p) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(box.lo[axis] <= p[axis] && p[axis] <= box.hi[axis])) return false;
+  }
+  return true;
+}
+
 }  // namespace
+
+const Evaluator& Field::program(const Index3& node, int level) const {
+  if (!programs_) return solid_;
+  const Programs::Found found = programs_->find(node, level);
+  return found.program ? **found.program : solid_;
+}
+
+template <class T, class Run>
+void Field::for_runs(const Points<T>& points, size_t n, Run run) const {
+  if (!programs_) return run(solid_, size_t(0), n);
+  const auto at = [&](size_t i) {
+    return Vec3{double(points.xyz[0][i]), double(points.xyz[1][i]), double(points.xyz[2][i])};
+  };
+  for (size_t first = 0, last; first < n; first = last) {
+    const Programs::Found found = programs_->find(at(first));
+    const auto is_good = [&](const Vec3& p) { return found.program && contains(found.valid, p); };
+    const bool is_short = is_good(at(first));
+    for (last = first + 1; last < n && is_good(at(last)) == is_short; ++last) {
+      // The full program is dear: the next point may have a shorter one.
+      if (!is_short && programs_->find(at(last)).program) break;
+    }
+    run(is_short ? **found.program : solid_, first, last - first);
+  }
+}
 
 template <class T>
 void Field::evaluate(Points<T>& points, size_t n) const {
+  for_runs(points, n, [&](const Evaluator& solid, size_t first, size_t count) {
+    T* out = points.value + first;
+    solid.block(points.xyz[0] + first, points.xyz[1] + first, points.xyz[2] + first, count, &out);
+  });
   T* out = points.value;
-  solid_.block(points.xyz[0], points.xyz[1], points.xyz[2], n, &out);
   for (size_t i = 0; i < n; ++i) {
     int face;
     const T clip = clip_value(bounds_, points, i, face);
@@ -41,15 +75,19 @@ void Field::evaluate(Points<T>& points, size_t n) const {
 
 template <class T>
 void Field::differentiate(Points<T>& points, size_t n) const {
-  T* gradient[3] = {points.gradient[0], points.gradient[1], points.gradient[2]};
-  solid_.gradient_block(points.xyz[0], points.xyz[1], points.xyz[2], n, points.value, gradient);
+  for_runs(points, n, [&](const Evaluator& solid, size_t first, size_t count) {
+    T* to[3];
+    for (int axis = 0; axis < 3; ++axis) to[axis] = points.gradient[axis] + first;
+    solid.gradient_block(points.xyz[0] + first, points.xyz[1] + first, points.xyz[2] + first, count,
+                         points.value + first, to);
+  });
   for (size_t i = 0; i < n; ++i) {
     int face;
     const T clip = clip_value(bounds_, points, i, face);
     if (!(clip < points.value[i])) continue;
     points.value[i] = clip;
     for (int axis = 0; axis < 3; ++axis) {
-      gradient[axis][i] = T(axis == face ? 1 : axis + 3 == face ? -1 : 0);
+      points.gradient[axis][i] = T(axis == face ? 1 : axis + 3 == face ? -1 : 0);
     }
   }
 }
@@ -59,8 +97,8 @@ template void Field::evaluate(Points<double>&, size_t) const;
 template void Field::differentiate(Points<float>&, size_t) const;
 template void Field::differentiate(Points<double>&, size_t) const;
 
-Interval Field::interval(const BoundingBox& box) const {
-  Interval result = solid_.interval(box);
+Interval Field::clipped(const Interval& solid, const BoundingBox& box) const {
+  Interval result = solid;
   for (int axis = 0; axis < 3; ++axis) {
     const Interval at{box.lo[axis], box.hi[axis]};
     result = min(result, min(at - Interval(bounds_.lo[axis]), Interval(bounds_.hi[axis]) - at));

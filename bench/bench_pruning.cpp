@@ -15,6 +15,7 @@
 #include "sardf/plane_image.hpp"
 #include "sardf/shorten.hpp"
 #include "sardf/vm_file.hpp"
+#include "shapes.hpp"
 
 namespace sardf::bench {
 namespace {
@@ -90,6 +91,20 @@ BENCHMARK_CAPTURE(mesh_balls, min_max, "min_max")
     ->Arg(10000)
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(mesh_balls, sardf, "sardf")->Arg(1000)->Arg(10000)->Unit(benchmark::kMillisecond);
+
+// The shapes of shapes.hpp with cells as fine as an octree of depth 8 has them.
+void mesh_shape(benchmark::State& state, Shape which) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const Evaluator field(shape(which));
+  MeshOptions options;
+  options.resolution = 256;
+  size_t faces = 0;
+  for (auto _ : state) faces = make_mesh(field, bounds(which), options).faces.size();
+  state.counters["faces"] = double(faces);
+}
+BENCHMARK_CAPTURE(mesh_shape, S1, Shape::spheres)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(mesh_shape, S2, Shape::block)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(mesh_shape, S3, Shape::blended_block)->Unit(benchmark::kMillisecond);
 
 void bound_balls(benchmark::State& state, const std::string& blend) {
   const Evaluator field = balls(int(state.range(0)), blend);

@@ -47,19 +47,26 @@ double longest_side(const BoundingBox& box) {
   return std::max({size[0], size[1], size[2]});
 }
 
-// A box with the field's evaluator, which is shortened for it (shorten.hpp).
+// A box with an evaluator of the field that is good in it (shorten.hpp).
 struct Cell {
   BoundingBox box;
   std::shared_ptr<const Evaluator> field;
+  int patience = 0;  // halvings until it is tried again to shorten
 };
 
-// The cell with a shorter program, where there is one: for the parts of a box.
-std::shared_ptr<const Evaluator> shortened(const Cell& cell) {
-  if (cell.field->tape().instructions().size() <= short_program) return cell.field;
-  auto shorter = std::make_shared<const Evaluator>(Shortening(*cell.field, cell.box).shortened());
-  const bool is_shorter =
-      shorter->tape().instructions().size() < cell.field->tape().instructions().size();
-  return is_shorter ? shorter : cell.field;
+// Whether the field is proven to be negative in the cell, by intervals. Where not, the cell gets a
+// shorter program, if there is one.
+bool has_negative_bound(Cell& cell) {
+  constexpr int wait = 3;
+  const size_t steps = cell.field->tape().instructions().size();
+  if (steps > short_program && --cell.patience < 0) {
+    const Shortening here(*cell.field, cell.box);
+    if (here.range().hi < 0) return true;
+    auto shorter = std::make_shared<const Evaluator>(here.shortened());
+    cell.patience = shorter->tape().instructions().size() < steps ? 0 : wait;
+    if (cell.patience == 0) cell.field = std::move(shorter);
+  }
+  return cell.field->interval(cell.box).hi < 0;
 }
 
 class Search {
@@ -89,23 +96,28 @@ class Search {
 
   /// Whether the solid is proven to have no point in the box.
   bool is_empty(const BoundingBox& box, int most_boxes) const {
+    return is_empty(Cell{box, field_}, most_boxes);
+  }
+
+ private:
+  bool is_empty(const Cell& cell, int most_boxes) const {
     const double least_side = 0.1 * tightness * hull_diagonal_;
-    std::vector<Cell> open{{box, field_}};
+    std::vector<Cell> open{cell};
     for (int looked_at = 0; !open.empty(); ++looked_at) {
-      const Cell part = std::move(open.back());
+      Cell part = std::move(open.back());
       open.pop_back();
       const double middle = part.field->value(part.box.center());
       if (middle >= 0 || looked_at >= most_boxes) return false;
       if (looked_at % 64 == 63) report(0.7);
       if (is_negative(part, middle)) continue;
       if (longest_side(part.box) < least_side) return false;
-      const auto field = shortened(part);
-      for (const BoundingBox& half : split(part.box)) open.push_back({half, field});
+      for (const BoundingBox& half : split(part.box)) {
+        open.push_back({half, part.field, part.patience});
+      }
     }
     return true;
   }
 
- private:
   void report(double share) const {
     if (progress_ && !progress_(share)) throw Cancelled();
   }
@@ -117,12 +129,12 @@ class Search {
   // Whether the field, of which the value in the middle is given, is negative all over the box. The
   // Lipschitz bound tells it without the cost of an interval; 4500 roundings of the largest number
   // are set aside for the value.
-  bool is_negative(const Cell& cell, double middle) const {
+  bool is_negative(Cell& cell, double middle) const {
     const BoundingBox& box = cell.box;
     const double rounding =
         1e-12 * (std::max({norm(box.lo), norm(box.hi), constants_}) + std::abs(middle));
     const double reach = slope_ * (0.5 * box.diagonal() * (1 + 1e-12) + rounding) + rounding;
-    return middle < -reach || cell.field->interval(box).hi < 0;
+    return middle < -reach || has_negative_bound(cell);
   }
 
   static std::array<BoundingBox, 2> split(const BoundingBox& box) {
@@ -154,21 +166,31 @@ class Search {
     throw Error("the solid is empty or a single point: it has no volume");
   }
 
+  static std::array<Cell, 8> eighths(const Cell& cell) {
+    std::array<Cell, 8> parts;
+    const Vec3 middle = cell.box.center();
+    for (size_t k = 0; k < 8; ++k) {
+      parts[k] = cell;
+      for (int axis = 0; axis < 3; ++axis) {
+        (k >> axis & 1 ? parts[k].box.lo : parts[k].box.hi)[axis] = middle[axis];
+      }
+    }
+    return parts;
+  }
+
   std::vector<Cell> remaining_children(const std::vector<Cell>& cells) const {
     std::vector<Cell> children;
     size_t looked_at = 0;
     for (const Cell& cell : cells) {
       if (++looked_at % 16 == 0) report(0.2);
-      const Vec3 middle = cell.box.center();
-      const auto field = shortened(cell);
-      for (int k = 0; k < 8; ++k) {
-        Cell child{{}, field};
-        for (int axis = 0; axis < 3; ++axis) {
-          child.box.lo[axis] = k >> axis & 1 ? middle[axis] : cell.box.lo[axis];
-          child.box.hi[axis] = k >> axis & 1 ? cell.box.hi[axis] : middle[axis];
-        }
-        const double value = field->value(child.box.center());
-        if (!is_negative(child, value)) children.push_back(std::move(child));
+      std::array<Cell, 8> parts = eighths(cell);
+      double at[3][8], value[8], *out = value;
+      for (size_t k = 0; k < 8; ++k) {
+        for (int axis = 0; axis < 3; ++axis) at[axis][k] = parts[k].box.center()[axis];
+      }
+      cell.field->block(at[0], at[1], at[2], 8, &out);
+      for (size_t k = 0; k < 8; ++k) {
+        if (!is_negative(parts[k], value[k])) children.push_back(std::move(parts[k]));
       }
     }
     return children;
@@ -179,12 +201,19 @@ class Search {
     double& face = upper ? hull.hi[axis] : hull.lo[axis];
     double inner = upper ? std::max(hull.lo[axis], face - farthest_step)
                          : std::min(hull.hi[axis], face + farthest_step);
+    Cell rest{hull, field_};
     while (std::abs(face - inner) > tightness * hull_diagonal_) {
       report(0.7);
       const double middle = 0.5 * (face + inner);
       BoundingBox slab = hull;
+      (upper ? slab.lo : slab.hi)[axis] = inner;
+      rest.box = slab;
+      if (has_negative_bound(rest)) {
+        face = inner;
+        break;
+      }
       (upper ? slab.lo : slab.hi)[axis] = middle;
-      if (is_empty(slab, proof_boxes)) {
+      if (is_empty(Cell{slab, rest.field}, proof_boxes)) {
         face = middle;
       } else {
         inner = middle;

@@ -26,9 +26,23 @@ constexpr double steep = 1.2;
 constexpr size_t short_program = 4;
 // How far beyond its node a program is good, in cells: rounded points stay within.
 constexpr double room_in_cells = 0.125;
+// Parts of blocks get programs of their own where the block's is longer than this.
+constexpr size_t long_program = 12;
+
+ProgramPointer if_shorter(Evaluator program, size_t steps) {
+  if (program.tape().instructions().size() >= steps) return nullptr;
+  return std::make_shared<const Evaluator>(std::move(program));
+}
+
+// Shortens a program for a box, if that is worth it: null where it is not.
+ProgramPointer shortened(const Evaluator& above, const BoundingBox& box, size_t short_enough) {
+  const size_t steps = above.tape().instructions().size();
+  if (steps <= short_enough) return nullptr;
+  return if_shorter(Shortening(above, box).shortened(), steps);
+}
 
 Programs no_programs(const Grid& grid) {
-  return {grid.origin, grid.cell * block_cells, room_in_cells * grid.cell};
+  return {grid.origin, grid.cell, room_in_cells * grid.cell};
 }
 
 class Pruning {
@@ -37,7 +51,7 @@ class Pruning {
     field_.use(no_programs(grid));
     const int32_t most = std::max({grid.blocks[0], grid.blocks[1], grid.blocks[2]});
     while ((int64_t(1) << levels_) < most) ++levels_;
-    const BoundingBox all = boxes_.box({0, 0, 0}, levels_);
+    const BoundingBox all = box({0, 0, 0}, levels_);
     slope_ = field.lipschitz(all);
     rounding_ = 1e-12 * std::max(norm(all.lo), norm(all.hi));
   }
@@ -48,9 +62,9 @@ class Pruning {
   // that can where it is shorter than the one above.
   void test(const Index3* nodes, size_t n, int level, uint8_t* keep, ProgramPointer* programs) {
     Points<double> centres;
-    for (size_t i = 0; i < n; ++i) centres.set(i, boxes_.box(nodes[i], level).center());
+    for (size_t i = 0; i < n; ++i) centres.set(i, box(nodes[i], level).center());
     field_.evaluate(centres, n);
-    const double radius = 0.5 * boxes_.box({0, 0, 0}, level).diagonal();
+    const double radius = 0.5 * box({0, 0, 0}, level).diagonal();
     const double reach = slope_ * (radius + rounding_) * (1 + 1e-12);
     for (size_t i = 0; i < n; ++i) {
       keep[i] = !(std::abs(centres.value[i]) > reach);
@@ -59,7 +73,7 @@ class Pruning {
   }
 
   void add(const Index3& node, int level, ProgramPointer program) {
-    if (program) field_.programs()->add(node, level, std::move(program));
+    if (program) field_.programs()->add(node, level + block_level, std::move(program));
   }
 
   // The children of a node that lie in the grid, appended.
@@ -76,23 +90,25 @@ class Pruning {
   }
 
  private:
+  BoundingBox box(const Index3& node, int level) const {
+    return boxes_.box(node, level + block_level);
+  }
+
   // Whether intervals leave a node in, too; and its program.
   bool examine(const Index3& node, int level, ProgramPointer& program) const {
-    const Evaluator& above = field_.program(node, level);
-    const BoundingBox box = boxes_.box(node, level);
+    const Evaluator& above = field_.program(node, level + block_level);
+    const BoundingBox here = box(node, level);
     const auto can_vanish = [&](const Interval& solid) {
-      const Interval range = field_.clipped(solid, box);
+      const Interval range = field_.clipped(solid, here);
       return !(range.hi < 0 || range.lo > 0);
     };
-    if (slope_ >= steep && !can_vanish(above.interval(box))) return false;
-    if (above.tape().instructions().size() <= short_program) return true;
-    const Shortening here(above, boxes_.valid_box(node, level));
-    if (!can_vanish(here.range())) return false;
-    Evaluator shorter = here.shortened();
-    if (shorter.tape().instructions().size() < above.tape().instructions().size()) {
-      program = std::make_shared<const Evaluator>(std::move(shorter));
+    const size_t steps = above.tape().instructions().size();
+    if (steps > short_program) {
+      const Shortening shortening(above, boxes_.valid_box(node, level + block_level));
+      if (!can_vanish(shortening.range())) return false;
+      program = if_shorter(shortening.shortened(), steps);
     }
-    return true;
+    return slope_ < steep || can_vanish((program ? *program : above).interval(here));
   }
 
   Field& field_;
@@ -115,6 +131,42 @@ void check_memory(size_t nodes, int level, const Grid& grid, size_t limit) {
 }
 
 }  // namespace
+
+void shorten_parts(const Field& field, const Index3& block,
+                   const std::array<uint64_t, block_cells>& occupied,
+                   std::vector<NodeProgram>& to) {
+  const Programs& programs = *field.programs();
+  const auto holds_surface = [&](const Index3& part, int edge) {
+    for (int z = part[2] * edge; z < (part[2] + 1) * edge; ++z) {
+      for (int y = part[1] * edge; y < (part[1] + 1) * edge; ++y) {
+        const int row = int(occupied[size_t(z)] >> (8 * y) & 0xFF);
+        if (row >> (part[0] * edge) & ((1 << edge) - 1)) return true;
+      }
+    }
+    return false;
+  };
+  // Depth first, so that each part starts from the program of the larger one.
+  const auto visit = [&](auto& self, const Evaluator& above, const Index3& part,
+                         int level) -> void {
+    const int parts = block_level - level;  // halvings since the block
+    if (!holds_surface(part, block_cells >> parts)) return;
+    Index3 node;
+    for (int axis = 0; axis < 3; ++axis) node[axis] = (block[axis] << parts) + part[axis];
+    ProgramPointer program;
+    if (level < block_level) {
+      program = shortened(above, programs.valid_box(node, level), long_program);
+      if (program) to.push_back({node, level, program});
+    }
+    if (level == 0) return;
+    const Evaluator& here = program ? *program : above;
+    if (here.tape().instructions().size() <= long_program) return;
+    for (int k = 0; k < 8; ++k) {
+      self(self, here, {2 * part[0] + (k & 1), 2 * part[1] + (k >> 1 & 1), 2 * part[2] + (k >> 2)},
+           level - 1);
+    }
+  };
+  visit(visit, field.program(block, block_level), {0, 0, 0}, block_level);
+}
 
 std::vector<Index3> find_blocks(Field& field, const Grid& grid, size_t memory_limit, Work& work) {
   Pruning pruning(field, grid);

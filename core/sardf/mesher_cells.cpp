@@ -19,6 +19,7 @@ struct Sampled {
   std::vector<uint8_t> inside, joined;
   std::vector<Crossing> crossings;
   std::vector<Index3> neighbours;  // blocks that share a crossed edge
+  std::vector<NodeProgram> programs;
 };
 
 template <class T>
@@ -124,6 +125,7 @@ Sampled sample(const Field& field, const Grid& grid, const Index3& block) {
   std::sort(result.neighbours.begin(), result.neighbours.end());
   result.neighbours.erase(std::unique(result.neighbours.begin(), result.neighbours.end()),
                           result.neighbours.end());
+  shorten_parts(field, block, result.occupied.occupied, result.programs);
   return result;
 }
 
@@ -178,6 +180,9 @@ Cells find_cells(Field& field, const Grid& grid, size_t memory_limit, Work& work
                              next[0] < grid.blocks[0] && next[1] < grid.blocks[1] &&
                              next[2] < grid.blocks[2];
         if (in_grid && known.emplace(key(next), true).second) missing.push_back(next);
+      }
+      for (NodeProgram& n : part.programs) {
+        field.programs()->add(n.node, n.level, std::move(n.program));
       }
       append(part, cells);
     }

@@ -1,5 +1,7 @@
 #include "sardf/mesher_field.hpp"
 
+#include <algorithm>
+#include <functional>
 #include <limits>
 
 namespace sardf::mesher {
@@ -33,6 +35,15 @@ bool contains(const BoundingBox& box, const Vec3& p) {
   return true;
 }
 
+template <class T>
+void copy_point(const Points<T>& from, size_t i, Points<T>& to, size_t k) {
+  for (int axis = 0; axis < 3; ++axis) {
+    to.xyz[axis][k] = from.xyz[axis][i];
+    to.gradient[axis][k] = from.gradient[axis][i];
+  }
+  to.value[k] = from.value[i];
+}
+
 }  // namespace
 
 const Evaluator& Field::program(const Index3& node, int level) const {
@@ -41,29 +52,50 @@ const Evaluator& Field::program(const Index3& node, int level) const {
   return found.program ? **found.program : solid_;
 }
 
-template <class T, class Run>
-void Field::for_runs(const Points<T>& points, size_t n, Run run) const {
-  if (!programs_) return run(solid_, size_t(0), n);
-  const auto at = [&](size_t i) {
-    return Vec3{double(points.xyz[0][i]), double(points.xyz[1][i]), double(points.xyz[2][i])};
-  };
-  for (size_t first = 0, last; first < n; first = last) {
-    const Programs::Found found = programs_->find(at(first));
-    const auto is_good = [&](const Vec3& p) { return found.program && contains(found.valid, p); };
-    const bool is_short = is_good(at(first));
-    for (last = first + 1; last < n && is_good(at(last)) == is_short; ++last) {
-      // The full program is dear: the next point may have a shorter one.
-      if (!is_short && programs_->find(at(last)).program) break;
+template <class T>
+bool Field::find_programs(const Points<T>& points, size_t n, const Evaluator** found) const {
+  bool is_one = true;
+  Programs::Found last;
+  for (size_t i = 0; i < n; ++i) {
+    const Vec3 at{double(points.xyz[0][i]), double(points.xyz[1][i]), double(points.xyz[2][i])};
+    // Points beside one another mostly lie in one node.
+    if (!last.program || !contains(last.valid, at)) {
+      last = programs_->find(at);
+      if (last.program && !contains(last.valid, at)) last.program = nullptr;
     }
-    run(is_short ? **found.program : solid_, first, last - first);
+    found[i] = last.program ? last.program->get() : &solid_;
+    is_one = is_one && found[i] == found[0];
+  }
+  return is_one;
+}
+
+template <class T, class Run>
+void Field::for_programs(Points<T>& points, size_t n, Run run) const {
+  const Evaluator* found[Points<T>::capacity];
+  if (!programs_ || n == 0) return run(solid_, points, n);
+  if (find_programs(points, n, found)) return run(*found[0], points, n);
+  // Where one lies in the order does not matter to the result.
+  uint16_t order[Points<T>::capacity];
+  for (size_t i = 0; i < n; ++i) order[i] = uint16_t(i);
+  std::sort(order, order + n, [&](uint16_t a, uint16_t b) {
+    return std::less<>()(found[a], found[b]) || (found[a] == found[b] && a < b);
+  });
+  Points<T> group;
+  for (size_t first = 0, last; first < n; first = last) {
+    const Evaluator* program = found[order[first]];
+    for (last = first; last < n && found[order[last]] == program; ++last) {
+      copy_point(points, order[last], group, last - first);
+    }
+    run(*program, group, last - first);
+    for (size_t i = first; i < last; ++i) copy_point(group, i - first, points, order[i]);
   }
 }
 
 template <class T>
 void Field::evaluate(Points<T>& points, size_t n) const {
-  for_runs(points, n, [&](const Evaluator& solid, size_t first, size_t count) {
-    T* out = points.value + first;
-    solid.block(points.xyz[0] + first, points.xyz[1] + first, points.xyz[2] + first, count, &out);
+  for_programs(points, n, [](const Evaluator& solid, Points<T>& at, size_t count) {
+    T* to = at.value;
+    solid.block(at.xyz[0], at.xyz[1], at.xyz[2], count, &to);
   });
   T* out = points.value;
   for (size_t i = 0; i < n; ++i) {
@@ -75,11 +107,9 @@ void Field::evaluate(Points<T>& points, size_t n) const {
 
 template <class T>
 void Field::differentiate(Points<T>& points, size_t n) const {
-  for_runs(points, n, [&](const Evaluator& solid, size_t first, size_t count) {
-    T* to[3];
-    for (int axis = 0; axis < 3; ++axis) to[axis] = points.gradient[axis] + first;
-    solid.gradient_block(points.xyz[0] + first, points.xyz[1] + first, points.xyz[2] + first, count,
-                         points.value + first, to);
+  for_programs(points, n, [](const Evaluator& solid, Points<T>& at, size_t count) {
+    T* to[3] = {at.gradient[0], at.gradient[1], at.gradient[2]};
+    solid.gradient_block(at.xyz[0], at.xyz[1], at.xyz[2], count, at.value, to);
   });
   for (size_t i = 0; i < n; ++i) {
     int face;

@@ -27,6 +27,7 @@ class Field {
   /// Shorter programs to evaluate by; until then there are none. They change no value.
   void use(Programs programs) { programs_ = std::move(programs); }
   std::optional<Programs>& programs() { return programs_; }
+  const std::optional<Programs>& programs() const { return programs_; }
   /// The solid's program for a node of the octree.
   const Evaluator& program(const Index3& node, int level) const;
 
@@ -43,9 +44,12 @@ class Field {
   double lipschitz(const BoundingBox& box) const;
 
  private:
-  // run(evaluator, first, count): consecutive points that one program is good for.
+  // run(evaluator, points, count) on all points, those together that one program is good for.
   template <class T, class Run>
-  void for_runs(const Points<T>& points, size_t n, Run run) const;
+  void for_programs(Points<T>& points, size_t n, Run run) const;
+  // The program for each point, and whether it is one for all.
+  template <class T>
+  bool find_programs(const Points<T>& points, size_t n, const Evaluator** found) const;
 
   const Evaluator& solid_;
   BoundingBox bounds_;

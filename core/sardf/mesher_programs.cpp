@@ -4,8 +4,8 @@
 
 namespace sardf::mesher {
 
-Programs::Programs(const Vec3& origin, double block_edge, double room)
-    : origin_(origin), edge_(block_edge), room_(room) {}
+Programs::Programs(const Vec3& origin, double cell, double room)
+    : origin_(origin), edge_(least_cells * cell), room_(room) {}
 
 BoundingBox Programs::box(const Index3& node, int level) const {
   const double edge = std::ldexp(edge_, level);
@@ -29,14 +29,14 @@ void Programs::add(const Index3& node, int level, ProgramPointer program) {
 }
 
 Programs::Found Programs::find(const Vec3& point) const {
-  Index3 block;
+  Index3 node;
   for (int axis = 0; axis < 3; ++axis) {
     const double at = std::floor((point[axis] - origin_[axis]) / edge_);
     // Far off the grid, or no number.
     if (!(at >= 0) || !(at < double(1 << 21))) return {};
-    block[axis] = int32_t(at);
+    node[axis] = int32_t(at);
   }
-  return find(block, 0);
+  return find(node, 0);
 }
 
 Programs::Found Programs::find(Index3 node, int level) const {

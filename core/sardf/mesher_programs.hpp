@@ -20,7 +20,9 @@ using ProgramPointer = std::shared_ptr<const Evaluator>;
 class Programs {
  public:
   /// `room`: how far beyond its node a program is good.
-  Programs(const Vec3& origin, double block_edge, double room);
+  Programs(const Vec3& origin, double cell, double room);
+  /// Cells along the edge of a node of level 0.
+  static constexpr int least_cells = 2;
 
   BoundingBox box(const Index3& node, int level) const;
   /// The box in which the node's program is good.

@@ -68,7 +68,8 @@ class OperationOf final : public Operation {
     for (double a : numbers_) magnitude_ = std::max(magnitude_, std::abs(a));
     std::array<Enclosure, arity> anything;
     anything.fill({Interval::all(), true});
-    may_be_copy_ = choose(anything.data()).origin != Choice::computed;
+    // A blend may add 0 to one of its arguments: the formula alone does not show that.
+    may_be_copy_ = join() != Join::none || choose(anything.data()).origin != Choice::computed;
   }
 
   static const OperationInfo& static_info() {
@@ -142,11 +143,13 @@ class OperationOf final : public Operation {
   }
 
   Enclosure range(const Enclosure* in) const override {
-    bool is_plain = true;
+    // Squares of more than this overflow floats.
+    constexpr double most = 0x1p60;
+    bool is_plain = magnitude_ < most;
     for (int k = 0; k < arity; ++k) {
-      is_plain = is_plain && !in[k].may_be_nan && in[k].value.magnitude() < infinity;
+      is_plain = is_plain && !in[k].may_be_nan && in[k].value.magnitude() < most;
     }
-    // Of a NaN or infinity the formula itself knows best what it makes.
+    // Of NaN and infinity the formula itself knows best what it makes.
     if (!is_plain) return natural_range(in);
     std::array<Interval, arity> values;
     for (int k = 0; k < arity; ++k) values[k] = in[k].value;

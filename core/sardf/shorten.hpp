@@ -29,8 +29,9 @@ class Shortening {
   /// Whether output k may be no number somewhere in the box.
   bool may_be_nan(size_t k = 0) const { return ranges_[outputs_[k]].may_be_nan; }
 
-  /// The evaluator for points in the box: the same bits in double and in float, gradients included;
-  /// of signs, the outputs are negative at the same points.
+  /// The evaluator for points in the box: the same bits in double and in float; of signs, the
+  /// outputs are negative at the same points. Gradients are equal, too, but where that of the full
+  /// program is NaN: what is found not to vary has the derivative 0 here.
   Evaluator shortened(Wanted wanted = Wanted::values) const;
 
  private:

@@ -103,12 +103,11 @@ class Pruning {
       return !(range.hi < 0 || range.lo > 0);
     };
     const size_t steps = above.tape().instructions().size();
-    if (steps > short_program) {
-      const Shortening shortening(above, boxes_.valid_box(node, level + block_level));
-      if (!can_vanish(shortening.range())) return false;
-      program = if_shorter(shortening.shortened(), steps);
-    }
-    return slope_ < steep || can_vanish((program ? *program : above).interval(here));
+    if (steps <= short_program) return slope_ < steep || can_vanish(above.interval(here));
+    const Shortening shortening(above, boxes_.valid_box(node, level + block_level));
+    if (!can_vanish(shortening.range())) return false;
+    program = if_shorter(shortening.shortened(), steps);
+    return true;
   }
 
   Field& field_;

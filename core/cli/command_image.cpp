@@ -21,8 +21,7 @@ struct Options {
   std::vector<double> window;
 };
 
-// A 1024² picture of all 7866 steps of a field takes less than a tenth of a second, and the scene's
-// bounds may take longer: they are found only where no window is given.
+// The field and what to draw of it.
 std::pair<Expression, PlaneView> read(const Options& options) {
   PlaneView view;
   view.z = options.z;

@@ -17,7 +17,10 @@ use fidget::{
 use std::hint::black_box;
 
 fn seconds() -> f64 {
-    let mut t = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+    let mut t = libc::timespec {
+        tv_sec: 0,
+        tv_nsec: 0,
+    };
     unsafe { libc::clock_gettime(libc::CLOCK_PROCESS_CPUTIME_ID, &mut t) };
     t.tv_sec as f64 + 1e-9 * t.tv_nsec as f64
 }
@@ -34,11 +37,22 @@ fn time(what: &str, by: &str, size: u32, runs: usize, mut work: impl FnMut() -> 
 }
 
 /// The picture's time with and without making the shape from the text's context.
-fn picture<F: Function + MathFunction + RenderHints + Clone>(by: &str, path: &str, size: u32, runs: usize) {
+fn picture<F: Function + MathFunction + RenderHints + Clone>(
+    by: &str,
+    path: &str,
+    size: u32,
+    runs: usize,
+) {
     let text = std::fs::read(path).expect("the .vm file can be read");
     let (context, root) = Context::from_text(&text[..]).expect("the .vm file is right");
-    let config = pixel::RenderConfig { pixel_perfect: false, ..pixel::RenderConfig::from_size(size.into()) };
-    let threads = pixel::EvalConfig { threads: None, ..Default::default() };
+    let config = pixel::RenderConfig {
+        pixel_perfect: false,
+        ..pixel::RenderConfig::from_size(size.into())
+    };
+    let threads = pixel::EvalConfig {
+        threads: None,
+        ..Default::default()
+    };
     time("picture", by, size, runs, || {
         let start = seconds();
         let shape = Shape::<F>::new(&context, root).unwrap();
@@ -75,7 +89,12 @@ fn dense<F: Function + MathFunction>(by: &str, name: &str, batch: usize, runs: u
     });
 }
 
-fn mesh<F: Function + MathFunction + RenderHints + Clone>(by: &str, name: &str, depth: u8, runs: usize) {
+fn mesh<F: Function + MathFunction + RenderHints + Clone>(
+    by: &str,
+    name: &str,
+    depth: u8,
+    runs: usize,
+) {
     let (tree, half) = shapes::shape(name);
     let mut context = Context::new();
     let root = context.import(&-tree);
@@ -90,14 +109,22 @@ fn mesh<F: Function + MathFunction + RenderHints + Clone>(by: &str, name: &str, 
             world_to_model: nalgebra::Matrix4::new_nonuniform_scaling(&scale),
             ..Default::default()
         };
-        black_box(fidget::mesh::Octree::build(&bound, &settings).unwrap().walk_dual());
+        black_box(
+            fidget::mesh::Octree::build(&bound, &settings)
+                .unwrap()
+                .walk_dual(),
+        );
         seconds() - start
     });
 }
 
 fn main() {
-    let path = std::env::args().nth(1).expect("usage: fidget_bench FIELD.vm [RUNS [mesh]]");
-    let runs = std::env::args().nth(2).map_or(7, |n| n.parse().expect("RUNS is a number"));
+    let path = std::env::args()
+        .nth(1)
+        .expect("usage: fidget_bench FIELD.vm [RUNS [mesh]]");
+    let runs = std::env::args()
+        .nth(2)
+        .map_or(7, |n| n.parse().expect("RUNS is a number"));
     println!("what,by,size,median,least,greatest");
     for size in [1024, 4096] {
         picture::<VmFunction>("interpreter", &path, size, runs);

@@ -59,9 +59,21 @@ fn spheres() -> Tree {
 
 /// A block with five holes and a torus, joined by minima or by SARDF of radius 0.5.
 fn block_with_holes(blended: bool) -> Tree {
-    let join = |x: Tree, y: Tree| if blended { rounded(x, y, 0.5) } else { x.min(y) };
+    let join = |x: Tree, y: Tree| {
+        if blended {
+            rounded(x, y, 0.5)
+        } else {
+            x.min(y)
+        }
+    };
     let mut f = block([0.0; 3], [10.0, 6.0, 4.0]);
-    for (x, y, r) in [(0.0, 0.0, 3.0), (8.0, 4.0, 1.0), (-8.0, 4.0, 1.0), (8.0, -4.0, 1.0), (-8.0, -4.0, 1.0)] {
+    for (x, y, r) in [
+        (0.0, 0.0, 3.0),
+        (8.0, 4.0, 1.0),
+        (-8.0, 4.0, 1.0),
+        (8.0, -4.0, 1.0),
+        (-8.0, -4.0, 1.0),
+    ] {
         f = join(f, -hole(x, y, r));
     }
     -join(-f, -torus())

@@ -159,7 +159,7 @@ TEST(DeepGraph, FieldsNeedNoStack) {
 }
 
 // A union of half a million balls in a row, each beside the next.
-TEST(DeepGraph, MayHaveAMillionNodesSlow) {
+TEST(DeepGraphSlow, MayHaveAMillionNodes) {
   const size_t before = live_nodes();
   on_small_stack([] {
     constexpr int count = 500000;
@@ -181,7 +181,7 @@ TEST(DeepGraph, MayHaveAMillionNodesSlow) {
 }
 
 // Constants do not need a register each: 256 points of all of them would take a gigabyte.
-TEST(DeepGraph, MayHaveManyConstants) {
+TEST(DeepGraphSlow, MayHaveManyConstants) {
   Expression sum = x;
   double expected = 2;
   for (int i = 1; i <= 100000; ++i) {

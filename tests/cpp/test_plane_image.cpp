@@ -66,7 +66,7 @@ std::string page_of_strokes(laws::Random& r, int strokes) {
   return text;
 }
 
-TEST(PlaneImage, IsTheDenseOne) {
+TEST(PlaneImageSlow, IsTheDenseOne) {
   laws::Random r(71);
   for (const int strokes : {1, 10, 300}) {
     const Evaluator field(parse_vm(page_of_strokes(r, strokes)));
@@ -80,7 +80,7 @@ TEST(PlaneImage, IsTheDenseOne) {
   }
 }
 
-TEST(PlaneImage, IsTheDenseOneForAnyField) {
+TEST(PlaneImageSlow, IsTheDenseOneForAnyField) {
   laws::Random r(72);
   for (int i = 0; i < laws::effort(200); ++i) {
     const Evaluator field(laws::random_field(r, 2).expression());

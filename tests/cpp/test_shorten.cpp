@@ -90,7 +90,7 @@ void expect_same_in(Random& r, const Evaluator& full, const BoundingBox& box) {
   expect_same(full, shortening, std::vector<float>(at.begin(), at.end()));
 }
 
-TEST(ShortenedProgram, HasTheSameBitsForRandomTreesSlow) {
+TEST(ShortenedProgramSlow, HasTheSameBitsForRandomTrees) {
   Random r(61);
   size_t shorter = 0, all = 0;
   for (int i = 0; i < laws::effort(400) && !testing::Test::HasFailure(); ++i) {

@@ -69,5 +69,6 @@ int main(int count, char** arguments) {
   sardf::add_compare_images(app);
   sardf::add_solve(app);
   sardf::add_schema(app);
+  sardf::add_image(app);
   return run(app, count, arguments);
 }

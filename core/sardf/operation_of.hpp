@@ -168,7 +168,11 @@ class OperationOf final : public Operation {
   double rounding_error(double magnitude, double result) const {
     double ulps = 16;
     if constexpr (requires { Op::rounding; }) ulps = Op::rounding;
-    return ulps == 0 ? 0 : max(max(magnitude_, std::abs(result)), magnitude) * ulps * 0x1p-52;
+    if (ulps == 0) return 0;
+    // The square of a number below 2^-511 is rounded to a multiple of 2^-1074, and the root of a
+    // sum of squares is then wrong by up to 2^-536. One sum or difference has no such error.
+    const double underflow = ulps > 1 ? 0x1p-530 : 0;
+    return max(max(magnitude_, std::abs(result)), magnitude) * ulps * 0x1p-52 + underflow;
   }
 
   static double largest(const Interval* in) {

@@ -109,7 +109,11 @@ class OperationOf final : public Operation {
   Interval interval(const Interval* in) const override {
     if constexpr (is_monotone<Op>) return at_end_points(in);
     const Interval natural = apply(op_, in);
-    if constexpr (is_exact_distance<Op>) return intersect(natural, around_centre(in));
+    if constexpr (is_exact_distance<Op>) {
+      // Squares overflow beyond: the distance is finite, its double is not.
+      constexpr double most = 0x1p500;
+      return largest(in) < most ? intersect(natural, around_centre(in)) : natural;
+    }
     if constexpr (requires { Op::mean_value; }) return intersect(natural, by_mean_value(in));
     return natural;
   }

@@ -82,7 +82,8 @@ double any_in(Random& r, Interval a) {
     case 4:
       return std::clamp(any_double(r), a.lo, a.hi);
     default:
-      return std::clamp(0.5 * a.lo + 0.5 * a.hi, a.lo, a.hi);
+      const double middle = 0.5 * a.lo + 0.5 * a.hi;
+      return std::isnan(middle) ? 0 : std::clamp(middle, a.lo, a.hi);
   }
 }
 
@@ -244,14 +245,15 @@ TEST(IntervalEnclosures, KnowTheEndsOfDomains) {
 TEST(IntervalEnclosures, SlopesOfPowersKnowTheirJumps) {
   const auto steepness = [](Interval base, Interval exponent) {
     const Bound power = pow(Bound::variable(base, 0), Bound::variable(exponent, 1));
-    return max(power.d[0].magnitude(), power.d[1].magnitude());
+    return power.d[1].magnitude();
   };
   EXPECT_EQ(steepness(-2, {2, 3}), infinity);
   EXPECT_EQ(steepness({0, 1}, {0, 1}), infinity);
-  EXPECT_LT(steepness({-2, 2}, 3), 12.1);
-  EXPECT_LT(steepness({0.5, 2}, {1, 2}), 4.1);
+  EXPECT_LT(steepness({0.5, 2}, {1, 2}), 2.8);
   // |ln 1e-320| is 736.8: the base is far below any float.
   EXPECT_GT(steepness(1e-320, {0, 0.001}), 736);
+  // A number as exponent has none.
+  EXPECT_LT(pow(Bound::variable(Interval{-2, 2}, 0), Bound(3.0)).d[0].magnitude(), 12.1);
 }
 
 }  // namespace

@@ -131,15 +131,11 @@ Bytes certify(const Progress& progress) {
   return bytes;
 }
 
-Bytes check(const Progress& progress) {
-  Bytes bytes;
-  bytes.add(double(scene().warnings(progress).size()));
-  return bytes;
-}
-
-constexpr LongWork all_long_work[] = {{"evaluate", evaluate}, {"mesh", mesh},
-                                      {"bake", bake},         {"volume", volume},
-                                      {"certify", certify},   {"check", check}};
+constexpr LongWork all_long_work[] = {{"evaluate", evaluate},
+                                      {"mesh", mesh},
+                                      {"bake", bake},
+                                      {"volume", volume},
+                                      {"certify", certify}};
 
 class LongWorkOf : public testing::TestWithParam<LongWork> {};
 

@@ -113,9 +113,13 @@ class OperationOf final : public Operation {
   }
 
   Interval interval(const Interval* in) const override {
-    if constexpr (is_monotone<Op>) return at_end_points(in);
+    if constexpr (is_monotone<Op>) {
+      if (rounding() <= 1 || !may_overflow(in)) return at_end_points(in);
+    }
     const Interval natural = apply(op_, in);
-    if constexpr (is_exact_distance<Op>) return intersect(natural, around_centre(in));
+    if constexpr (is_exact_distance<Op>) {
+      return may_overflow(in) ? natural : intersect(natural, around_centre(in));
+    }
     if constexpr (requires { Op::mean_value; }) return intersect(natural, by_mean_value(in));
     return natural;
   }
@@ -202,11 +206,27 @@ class OperationOf final : public Operation {
  private:
   static double times(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
 
+  static constexpr double rounding() {
+    if constexpr (requires { Op::rounding; }) return Op::rounding;
+    return 16;
+  }
+
+  // Whether an end is so far away that its square overflows: the formula's double is infinite where
+  // the real value is not. An infinite end stands for all that is nearer.
+  static bool may_overflow(const Interval* in) {
+    constexpr double most = 0x1p500;
+    const auto is_far = [](double end) { return std::abs(end) >= most && std::isfinite(end); };
+    return std::any_of(in, in + arity, [&](Interval i) { return is_far(i.lo) || is_far(i.hi); });
+  }
+
   // Bound of the rounding error of `result`, a value for arguments up to `magnitude`.
   double rounding_error(double magnitude, double result) const {
-    double ulps = 16;
-    if constexpr (requires { Op::rounding; }) ulps = Op::rounding;
-    return ulps == 0 ? 0 : max(max(magnitude_, std::abs(result)), magnitude) * ulps * 0x1p-52;
+    const double ulps = rounding();
+    if (ulps == 0) return 0;
+    // The square of a number below 2^-511 is rounded to a multiple of 2^-1074, and the root of a
+    // sum of squares is then wrong by up to 2^-536. One sum or difference has no such error.
+    const double underflow = ulps > 1 ? 0x1p-530 : 0;
+    return max(max(magnitude_, std::abs(result)), magnitude) * ulps * 0x1p-52 + underflow;
   }
 
   static double largest(const Interval* in) {

@@ -82,7 +82,8 @@ class FateBetween {
     ranges[k].value = of_k;
     ranges[1 - k].value = of_other;
     const Choice result = choose_(ranges.data());
-    return result.origin == k && result.negated == (signs_[k] < 0);
+    if (result.origin != k || result.origin < 0) return false;
+    return result.negated == (signs_[k] < 0);
   }
 
   double floor_of(int k) const {

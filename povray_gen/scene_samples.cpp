@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <unordered_set>
 
+#include "sardf/pulse.hpp"
+
 namespace sardf::povray {
 
 namespace {
@@ -38,11 +40,6 @@ std::vector<std::string> leave_out(PovrayScene& scene) {
   std::erase_if(scene.fields, needs_more);
   std::erase_if(scene.fractions, needs_more);
   return names;
-}
-
-Progress part_of(const Progress& progress, double from, double to) {
-  if (!progress) return {};
-  return [=](double share) { return progress(from + (to - from) * share); };
 }
 
 /// An expression of the scene: where it is, what users call it, and where its error is stated.

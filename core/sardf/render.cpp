@@ -65,7 +65,7 @@ Subject make_subject(const Evaluator& solid, const BoundingBox& bounds,
   Subject subject{solid,
                   bounds,
                   Rays(options.camera, options.width, options.height),
-                  LocalSlopes(solid, bounds, slope_cells(options), [&] { return watch.go_on(); }),
+                  LocalSlopes(solid, bounds, slope_cells(options), [&] { watch.check(); }),
                   options.tolerance.value_or(default_tolerance * diagonal),
                   single_precision_error(solid, bounds),
                   0};

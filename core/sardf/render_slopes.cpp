@@ -42,7 +42,7 @@ double largest_around(int cells, const std::vector<double>& of_cell, size_t i) {
 }  // namespace
 
 LocalSlopes::LocalSlopes(const Evaluator& field, const BoundingBox& box, int most_cells,
-                         const std::function<bool()>& go_on)
+                         const std::function<void()>& check)
     : box_(box) {
   const double all = bound_of(field.slope(box).length);
   levels_.push_back({1, infinity, {all}, {all}, {0}});
@@ -54,7 +54,7 @@ LocalSlopes::LocalSlopes(const Evaluator& field, const BoundingBox& box, int mos
   };
   walks_ = all == infinity;
   while (is_wanting(levels_.back())) {
-    levels_.push_back(refined(field, levels_.back(), most_cells, go_on));
+    levels_.push_back(refined(field, levels_.back(), most_cells, check));
   }
 }
 
@@ -77,7 +77,7 @@ BoundingBox LocalSlopes::cell_box(const Level& level, const std::array<int, 3>& 
 }
 
 LocalSlopes::Level LocalSlopes::refined(const Evaluator& field, const Level& coarse, int most_cells,
-                                        const std::function<bool()>& go_on) const {
+                                        const std::function<void()>& check) const {
   Level level{2 * coarse.cells, 0, {}, {}, {}};
   const Vec3 size = box_.size();
   level.reach = std::min({size[0], size[1], size[2]}) / level.cells;
@@ -89,7 +89,8 @@ LocalSlopes::Level LocalSlopes::refined(const Evaluator& field, const Level& coa
     const double known = coarse.of_cell[parent];
     level.of_cell[i] = known;
     level.empty[i] = coarse.empty[parent];
-    if (!wants_more(coarse, parent, most_cells) || !go_on()) return;
+    if (!wants_more(coarse, parent, most_cells)) return;
+    check();
     // Far from the surface steps are long enough. Neighbours of cells with surface count as near.
     const BoundingBox box = cell_box(level, at);
     if (std::abs(field.value(box.center())) > 1.5 * known * box.diagonal()) return;

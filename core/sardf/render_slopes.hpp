@@ -16,10 +16,9 @@ namespace sardf::rendering {
 /// helps are proven empty of the solid instead, where they can be.
 class LocalSlopes {
  public:
-  /// `most_cells`: along each side. `go_on` is asked between cells; false ends the work early, with
-  /// true but worse bounds.
+  /// `most_cells`: along each side. `check` is called between cells and may throw to end the work.
   LocalSlopes(const Evaluator& field, const BoundingBox& box, int most_cells,
-              const std::function<bool()>& go_on);
+              const std::function<void()>& check);
 
   /// A field with the value -`depth` at a point of the box has no zero within this distance of it,
   /// as far as the box reaches. 0 where no bound is known.
@@ -40,7 +39,7 @@ class LocalSlopes {
   };
   bool wants_more(const Level& level, size_t cell, int most_cells) const;
   Level refined(const Evaluator& field, const Level& coarse, int most_cells,
-                const std::function<bool()>& go_on) const;
+                const std::function<void()>& check) const;
   BoundingBox cell_box(const Level& level, const std::array<int, 3>& cell) const;
   std::array<int, 3> cell_of(const Level& level, const Vec3& point) const;
 

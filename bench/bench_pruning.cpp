@@ -15,36 +15,38 @@
 #include "sardf/plane_image.hpp"
 #include "sardf/shorten.hpp"
 #include "sardf/vm_file.hpp"
-#include "shapes.hpp"
 
 namespace sardf::bench {
 namespace {
 
 const char* prospero_path() { return std::getenv("SARDF_PROSPERO"); }
 
-void draw_prospero(benchmark::State& state) {
-  if (!prospero_path()) {
-    state.SkipWithError("$SARDF_PROSPERO is not the path of prospero.vm");
-    return;
-  }
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  const Evaluator field(read_vm(prospero_path()));
+// The field of prospero.vm and a view of all of it.
+struct Prospero {
+  explicit Prospero(int size) { view.width = view.height = size; }
+  Evaluator field{read_vm(prospero_path())};
   PlaneView view;
-  view.width = view.height = int(state.range(0));
+};
+
+bool is_skipped(benchmark::State& state) {
+  if (prospero_path()) return false;
+  state.SkipWithError("$SARDF_PROSPERO is not the path of prospero.vm");
+  return true;
+}
+
+void draw_prospero(benchmark::State& state) {
+  if (is_skipped(state)) return;
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const auto [field, view] = Prospero(int(state.range(0)));
   for (auto _ : state) benchmark::DoNotOptimize(sign_image(field, view));
 }
 BENCHMARK(draw_prospero)->Arg(1024)->Arg(4096)->Unit(benchmark::kMillisecond);
 
 // The same picture from every pixel in double: the time, and whether it is the same.
 void draw_prospero_densely(benchmark::State& state) {
-  if (!prospero_path()) {
-    state.SkipWithError("$SARDF_PROSPERO is not the path of prospero.vm");
-    return;
-  }
+  if (is_skipped(state)) return;
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  const Evaluator field(read_vm(prospero_path()));
-  PlaneView view;
-  view.width = view.height = int(state.range(0));
+  const auto [field, view] = Prospero(int(state.range(0)));
   std::vector<double> points, values(size_t(view.width) * view.height);
   for (int row = 0; row < view.height; ++row) {
     for (int column = 0; column < view.width; ++column) {
@@ -91,20 +93,6 @@ BENCHMARK_CAPTURE(mesh_balls, min_max, "min_max")
     ->Arg(10000)
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(mesh_balls, sardf, "sardf")->Arg(1000)->Arg(10000)->Unit(benchmark::kMillisecond);
-
-// The shapes of shapes.hpp with cells as fine as an octree of depth 8 has them.
-void mesh_shape(benchmark::State& state, Shape which) {
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  const Evaluator field(shape(which));
-  MeshOptions options;
-  options.resolution = 256;
-  size_t faces = 0;
-  for (auto _ : state) faces = make_mesh(field, bounds(which), options).faces.size();
-  state.counters["faces"] = double(faces);
-}
-BENCHMARK_CAPTURE(mesh_shape, S1, Shape::spheres)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(mesh_shape, S2, Shape::block)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(mesh_shape, S3, Shape::blended_block)->Unit(benchmark::kMillisecond);
 
 void bound_balls(benchmark::State& state, const std::string& blend) {
   const Evaluator field = balls(int(state.range(0)), blend);

@@ -12,16 +12,6 @@ namespace sardf::povray {
 
 namespace {
 
-// Null where none is known: of second derivatives of a distance that is found by a search.
-Expression derivative_or_null(const Operation& operation, int axis,
-                              std::span<const Expression> inputs) {
-  try {
-    return operation.derivative(axis, inputs);
-  } catch (const Error&) {
-    return nullptr;
-  }
-}
-
 constexpr double first_samples = 36000;
 // Where a function jumps no grid makes the error small; the jump lies within a cell of this one.
 constexpr double most_samples_of_jumps = 2.2e6;
@@ -111,7 +101,7 @@ Sampler::Sampler(OperationPointer operation, const std::array<Interval, 3>& box)
   for (int k = 0; k < info.arity; ++k) {
     // That of a distance has no bound wherever there is a kink.
     const Expression slope =
-        operation_->is_distance() ? nullptr : derivative_or_null(*operation_, k, inputs);
+        operation_->is_distance() ? nullptr : operation_->derivative(k, inputs);
     curvature_[size_t(k)] = slope ? lipschitz_bound(Evaluator(slope), all) : infinity;
   }
 }

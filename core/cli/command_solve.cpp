@@ -34,6 +34,8 @@ Row row_of(const SolvedField& solved) {
           text("%.8g", r.energy_after),
           text("%.4g", r.rms_before),
           text("%.4g", r.rms_after),
+          text("%.6g", r.mean),
+          text("%.1e", r.cut),
           text("%.2f", r.seconds)};
 }
 
@@ -64,7 +66,7 @@ void solve_scene(const Options& options) {
   }
   const std::vector<SolvedField> solved = solve_fields(scene, terminal_progress("solving"));
   std::vector<Row> rows{{"field", "unknowns", "points", "iterations", "residual", "energy before",
-                         "after", "rms before", "after", "seconds"}};
+                         "after", "rms before", "after", "mean", "cut", "seconds"}};
   for (const SolvedField& each : solved) rows.push_back(row_of(each));
   // The table must not mix with a scene on the standard output.
   std::ostream& to = options.output == "-" ? std::cerr : std::cout;

@@ -4,8 +4,6 @@
 #include <queue>
 #include <unordered_map>
 
-#include "sardf/error.hpp"
-
 namespace sardf {
 
 namespace {
@@ -55,14 +53,11 @@ struct Part {
   bool operator<(const Part& other) const { return length < other.length; }
 };
 
-// 0 where there is no gradient, or none is known (data_operation.hpp).
+// 0 where there is no gradient, or it is not known.
 double steepest_at(const Evaluator& evaluator, const Vec3& point) {
+  if (!evaluator.has_gradients()) return 0;
   Vec3 gradient;
-  try {
-    evaluator.gradients(point.data(), 1, nullptr, gradient.data());
-  } catch (const Error&) {
-    return 0;
-  }
+  evaluator.gradients(point.data(), 1, nullptr, gradient.data());
   const double length = norm(gradient);
   return std::isnan(length) ? 0 : length;
 }

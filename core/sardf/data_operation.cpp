@@ -326,7 +326,13 @@ class JacobianOperation final : public DataOperation {
   }
   using DataOperation::evaluate;
 
-  void partials(const double* const*, double*, double* const*, size_t) const override { fail(); }
+  std::string no_derivatives() const override {
+    return "third derivatives of a distance found by a search ('" + set_->name() +
+           "') are not known";
+  }
+  void partials(const double* const*, double*, double* const*, size_t) const override {
+    throw Error(no_derivatives());
+  }
 
   Interval interval(const Interval*) const override {
     return axes_.first == axes_.second ? Interval{0, infinity} : Interval::all();
@@ -338,14 +344,7 @@ class JacobianOperation final : public DataOperation {
     return slope_from(in, interval(values.data()), partials, infinity);
   }
 
-  Expression derivative(int, std::span<const Expression>) const override { fail(); }
-
  private:
-  [[noreturn]] void fail() const {
-    throw Error("third derivatives of a distance found by a search ('" + set_->name() +
-                "') are not known");
-  }
-
   PointSetPointer set_;
   std::pair<int, int> axes_;
 };

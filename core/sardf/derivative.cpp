@@ -17,7 +17,10 @@ namespace {
 Expression known_derivative(const Node& node, int input) {
   const Expression by = node.operation->derivative(input, node.arguments());
   if (by) return by;
-  throw Error("the derivative of '" + node.operation->info().name + "' is not known");
+  const std::string reason = node.operation->no_derivatives();
+  throw Error(!reason.empty()
+                  ? reason
+                  : "the derivative of '" + node.operation->info().name + "' is not known");
 }
 
 template <class V>

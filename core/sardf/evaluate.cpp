@@ -233,6 +233,13 @@ void Evaluator::values(const double* points, size_t n, double* out,
 void Evaluator::values(const float* points, size_t n, float* out, const Progress& progress) const {
   evaluate_points(tape_, points, n, out, progress);
 }
+bool Evaluator::has_gradients() const {
+  const std::vector<Instruction>& steps = tape_.instructions();
+  return std::all_of(steps.begin(), steps.end(), [](const Instruction& step) {
+    return step.operation->no_derivatives().empty();
+  });
+}
+
 void Evaluator::gradients(const double* points, size_t n, double* out, double* gradient) const {
   gradients_at_points(tape_, points, n, out, gradient);
 }

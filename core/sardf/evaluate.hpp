@@ -53,6 +53,8 @@ class Evaluator {
   void values(const double* points, size_t n, double* out, const Progress& progress = {}) const;
   /// The SIMD path; same layout.
   void values(const float* points, size_t n, float* out, const Progress& progress = {}) const;
+  /// Whether every operation has derivatives; without, `gradients` throws Error.
+  bool has_gradients() const;
   /// Values and gradients of the first output. gradient: n × 3. `out` may be nullptr.
   void gradients(const double* points, size_t n, double* out, double* gradient) const;
   void gradients(const float* points, size_t n, float* out, float* gradient) const;

@@ -118,6 +118,8 @@ class Operation {
   virtual bool has_formula() const { return true; }
   /// Records the formula; the result's step is trace.result.
   virtual void record(Trace& trace) const = 0;
+  /// Why `partials` throws Error, in one sentence; empty for all others.
+  virtual std::string no_derivatives() const { return ""; }
   /// Of an operation without a formula, the partial derivative by input k as an expression of the
   /// inputs; null where that is not known.
   virtual Expression derivative(int k, std::span<const Expression> inputs) const;

@@ -19,11 +19,13 @@
 #include <tuple>
 #include <vector>
 
+#include "source_folder.hpp"
+
 namespace sardf::golden {
 
 inline std::vector<std::string> folders() {
   if (const char* other = std::getenv("SARDF_GOLDEN")) return {other};
-  const std::string papers = std::string(SARDF_SOURCE_DIR) + "/tests/golden";
+  const std::string papers = source_folder() / "tests/golden";
   return {papers, papers + "/varied_1", papers + "/varied_2"};
 }
 

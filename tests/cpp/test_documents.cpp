@@ -10,6 +10,7 @@
 #include "sardf/document.hpp"
 #include "sardf/fractions.hpp"
 #include "sardf/scene_file.hpp"
+#include "source_folder.hpp"
 
 namespace sardf {
 namespace {
@@ -56,7 +57,7 @@ TEST(Documents, ReferenceNamesEveryOperation) {
 
 TEST(Documents, ReferenceInTheRepositoryIsCurrent) {
   std::stringstream kept;
-  kept << std::ifstream(std::string(SARDF_SOURCE_DIR) + "/docs/operations.md").rdbuf();
+  kept << std::ifstream(source_folder() / "docs/operations.md").rdbuf();
   EXPECT_EQ(kept.str(), operations_document()) << "sardf schema --document > docs/operations.md";
 }
 

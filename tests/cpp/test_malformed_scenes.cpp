@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "sardf/scene_file.hpp"
+#include "source_folder.hpp"
 
 namespace sardf {
 namespace {
@@ -56,7 +57,7 @@ class MalformedScene : public testing::TestWithParam<std::string> {};
 
 TEST_P(MalformedScene, IsReportedWhereItIsWrong) {
   const std::string file = GetParam() + ".json";
-  const std::string text = contents(fs::path(SARDF_SOURCE_DIR) / "tests/malformed" / file);
+  const std::string text = contents(source_folder() / "tests/malformed" / file);
   const std::vector<Expected> expected = expectations(text);
   const std::vector<Error> found = problems(text, file);
   ASSERT_FALSE(expected.empty());
@@ -73,7 +74,7 @@ TEST_P(MalformedScene, IsReportedWhereItIsWrong) {
 
 std::vector<std::string> names() {
   std::vector<std::string> all;
-  for (const auto& entry : fs::directory_iterator(fs::path(SARDF_SOURCE_DIR) / "tests/malformed")) {
+  for (const auto& entry : fs::directory_iterator(source_folder() / "tests/malformed")) {
     all.push_back(entry.path().stem().string());
   }
   std::sort(all.begin(), all.end());

@@ -15,6 +15,7 @@
 #include "sardf/ops.hpp"
 #include "sardf/ops_domain.hpp"
 #include "sardf/scene_file.hpp"
+#include "source_folder.hpp"
 
 namespace sardf {
 namespace {
@@ -177,7 +178,7 @@ TEST(PovrayFieldErrors, CanBeCancelled) {
 // A scene file's picture with few samples.
 struct ShippedScene {
   explicit ShippedScene(const std::string& name)
-      : scene(read_scene(SARDF_SOURCE_DIR "/scenes/" + name + ".json")) {
+      : scene(read_scene(source_folder() / "scenes" / (name + ".json"))) {
     exact.title = name;
     exact.solid = scene.drawn();
     exact.bounds = scene.bounds();

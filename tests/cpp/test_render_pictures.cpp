@@ -5,6 +5,7 @@
 #include "sardf/camera_file.hpp"
 #include "sardf/render.hpp"
 #include "sardf/scene_file.hpp"
+#include "source_folder.hpp"
 
 namespace sardf {
 namespace {
@@ -128,7 +129,7 @@ TEST(RenderPictures, ShadowsFallAwayFromTheKeyLight) {
 }
 
 TEST(RenderPictures, ThePictureDoesNotDependOnThreads) {
-  const Scene scene(read_scene(SARDF_SOURCE_DIR "/scenes/cad_plate_cut.json"));
+  const Scene scene(read_scene(source_folder() / "scenes/cad_plate_cut.json"));
   RenderOptions options;
   options.width = 133;
   options.height = 97;

@@ -14,6 +14,7 @@
 #include "sardf/constructor.hpp"
 #include "sardf/formula.hpp"
 #include "sardf/json_document.hpp"
+#include "source_folder.hpp"
 
 namespace sardf {
 namespace {
@@ -33,7 +34,7 @@ std::string problem(const std::string& text) {
 }
 
 // A scene that says everything a scene can say; test_scene_words.cpp sees to that.
-const std::string everything_path = std::string(SARDF_SOURCE_DIR) + "/tests/scenes/everything.json";
+const std::string everything_path = source_folder() / "tests/scenes/everything.json";
 
 const std::string& everything() {
   static const std::string text = [] {
@@ -220,8 +221,7 @@ TEST(SceneFile, CutAnywhereGivesAnErrorAndNothingElse) {
 
 TEST(SceneFile, OfEveryExampleIsReadAndWritten) {
   size_t count = 0;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(std::string(SARDF_SOURCE_DIR) + "/scenes")) {
+  for (const auto& entry : std::filesystem::directory_iterator(source_folder() / "scenes")) {
     if (entry.path().extension() != ".json") continue;
     SCOPED_TRACE(entry.path().string());
     const SceneDescription scene = read_scene(entry.path());

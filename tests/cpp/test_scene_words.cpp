@@ -8,6 +8,7 @@
 #include "sardf/constructor.hpp"
 #include "sardf/field_parts.hpp"
 #include "sardf/scene_file.hpp"
+#include "source_folder.hpp"
 
 namespace sardf {
 namespace {
@@ -132,7 +133,7 @@ const std::vector<std::string> listed = all_words();
 
 TEST(SceneWords, AreAllInTheSceneThatSaysEverything) {
   const std::set<std::string> said =
-      words_of(read_scene(std::string(SARDF_SOURCE_DIR) + "/tests/scenes/everything.json"));
+      words_of(read_scene(source_folder() / "tests/scenes/everything.json"));
   EXPECT_GT(listed.size(), 200u);
   for (const std::string& word : listed) EXPECT_TRUE(said.count(word)) << word << " is missing";
 }

@@ -84,6 +84,15 @@ class Group {
 
   /// Texels of n components from an array for each.
   static void interleave(const float* const* from, size_t first, size_t count, int n, float* to) {
+    if (n == 3) {
+      const float *a = from[0] + first, *b = from[1] + first, *c = from[2] + first;
+      for (size_t i = 0; i < count; ++i) {
+        to[3 * i] = a[i];
+        to[3 * i + 1] = b[i];
+        to[3 * i + 2] = c[i];
+      }
+      return;
+    }
     const size_t stride = size_t(n);
     for (size_t c = 0; c < stride; ++c)
       for (size_t i = 0; i < count; ++i) to[stride * i + c] = from[c][first + i];

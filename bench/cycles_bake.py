@@ -187,7 +187,7 @@ def main():
     os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[-threads:])
     mesh, ours, our_times = sardf_bake(size, resolution)
     theirs, their_times = cycles_bake(mesh, size, threads)
-    covered = theirs[..., 3] > 0.5
+    covered = theirs[..., :3].max(axis=2) > 0  # no colour is black
     texels = int(covered.sum())
     print(f"{size}² texels, {texels} covered by Cycles, {len(mesh.faces)} faces, {threads} threads")
     report("sardf", our_times, texels)

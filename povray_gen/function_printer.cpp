@@ -290,6 +290,9 @@ void FunctionPrinter::add(const std::string& name, const std::string& signature,
                 " calls inside each other; POV-Ray evaluates about 1000");
   }
   depth_[name] = depth + 1;
+  if (const auto comment = comments_.find(name); comment != comments_.end()) {
+    text_ += comment->second;
+  }
   text_ += "#declare " + name + " = function(" + signature + ") {\n" + wrapped(body) + "\n}\n";
 }
 

@@ -29,6 +29,9 @@ class FunctionPrinter {
   /// Adds text that declares what functions after it call.
   void insert(const std::string& text) { text_ += text; }
 
+  /// Lines of comment that stand before the function of this name, declared later.
+  void comment(const std::string& name, std::string lines) { comments_[name] = std::move(lines); }
+
   const std::string& text() const { return text_; }
 
  private:
@@ -47,6 +50,7 @@ class FunctionPrinter {
   std::string text_;
   std::map<std::string, std::string> known_;  // signature and body -> name
   std::map<std::string, int> depth_;
+  std::map<std::string, std::string> comments_;
 };
 
 }  // namespace sardf::povray

@@ -28,16 +28,7 @@ std::string comment_of(const SampledFunction& sampled) {
     text +=
         (k ? ", " : " ") + number_text(box[size_t(k)].lo) + " to " + number_text(box[size_t(k)].hi);
   }
-  text += "; others are moved to the nearest of these.";
-  std::string out;
-  for (size_t begin = 0; begin < text.size();) {
-    size_t end = text.size();
-    if (end - begin > comment_width) end = text.rfind(' ', begin + comment_width);
-    if (end == std::string::npos || end <= begin) end = text.size();
-    out += "// " + text.substr(begin, end - begin) + "\n";
-    begin = end + 1;
-  }
-  return out;
+  return comment_lines(text + "; others are moved to the nearest of these.");
 }
 
 bool is_operation(const Node* node) { return node->type == Node::Type::operation; }
@@ -81,6 +72,18 @@ class Nodes {
 
 }  // namespace
 
+std::string comment_lines(const std::string& text) {
+  std::string out;
+  for (size_t begin = 0; begin < text.size();) {
+    size_t end = text.size();
+    if (end - begin > comment_width) end = text.rfind(' ', begin + comment_width);
+    if (end == std::string::npos || end <= begin) end = text.size();
+    out += "// " + text.substr(begin, end - begin) + "\n";
+    begin = end + 1;
+  }
+  return out;
+}
+
 std::vector<std::string> FunctionWriter::declare(std::span<const NamedExpression> expressions) {
   std::vector<Expression> roots;
   for (const NamedExpression& named : expressions) roots.push_back(named.expression);
@@ -98,7 +101,7 @@ std::vector<std::string> FunctionWriter::declare(std::span<const NamedExpression
 
 std::string FunctionWriter::declare(const NamedExpression& expression) {
   try {
-    return declare_function(names_.unique(expression.name), expression.expression);
+    return declare_function(names_.unique(expression.name), expression);
   } catch (const Error& error) {
     throw Error("'" + expression.name + "' cannot be written for POV-Ray: " + error.message,
                 error.file, error.line, error.pointer);
@@ -106,7 +109,9 @@ std::string FunctionWriter::declare(const NamedExpression& expression) {
 }
 
 std::string FunctionWriter::declare_function(const std::string& name,
-                                             const Expression& expression) {
+                                             const NamedExpression& named) {
+  const Expression& expression = named.expression;
+  if (!named.comment.empty()) printer_.comment(name, comment_lines(named.comment));
   Terms terms;
   for (int axis = 0; axis < 3; ++axis) terms.input(axis);
   int root;

@@ -18,7 +18,11 @@ namespace sardf::povray {
 struct NamedExpression {
   std::string name;
   Expression expression;
+  std::string comment = {};  ///< a sentence for the reader of the function; empty: none
 };
+
+/// The text as lines of comment.
+std::string comment_lines(const std::string& text);
 
 /// Declares one function of x, y, z for each named expression, positive inside as everywhere in
 /// our code. An operation becomes a function of its inputs, one for equal parameters, unless it is
@@ -41,7 +45,7 @@ class FunctionWriter {
  private:
   using OperationKey = std::pair<std::string, std::vector<double>>;
 
-  std::string declare_function(const std::string& name, const Expression& expression);
+  std::string declare_function(const std::string& name, const NamedExpression& named);
   int add_terms(Terms& terms, const Expression& root);
   int add_guarded_call(Terms& terms, const Node& node, std::span<const int> inputs, int costly,
                        const std::function<int(const Expression&)>& term_of);

@@ -76,4 +76,11 @@ std::string number_text(double value) {
   return {text, end};
 }
 
+std::string bound_text(double value) {
+  char text[32];
+  const auto end =
+      std::to_chars(text, text + sizeof text, value * 1.005, std::chars_format::general, 3).ptr;
+  return {text, end};
+}
+
 }  // namespace sardf::povray

@@ -38,4 +38,7 @@ class Names {
 /// Throws Error for infinities and NaN, which POV-Ray cannot read.
 std::string number_text(double value);
 
+/// A number that bounds others from above: three digits, rounded up.
+std::string bound_text(double value);
+
 }  // namespace sardf::povray

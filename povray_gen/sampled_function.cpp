@@ -1,7 +1,8 @@
 #include "povray_gen/sampled_function.hpp"
 
 #include <atomic>
-#include <charconv>
+
+#include "povray_gen/names.hpp"
 
 namespace sardf::povray {
 
@@ -17,14 +18,6 @@ OperationInfo sampled_info(OperationInfo info) {
 std::vector<double> serial_number() {
   static std::atomic<int64_t> made{0};
   return {double(++made)};
-}
-
-// Three digits, rounded up.
-std::string bound_text(double value) {
-  char text[32];
-  const auto end =
-      std::to_chars(text, text + sizeof text, value * 1.005, std::chars_format::general, 3).ptr;
-  return {text, end};
 }
 
 }  // namespace

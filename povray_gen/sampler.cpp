@@ -12,6 +12,16 @@ namespace sardf::povray {
 
 namespace {
 
+// Null where none is known: of second derivatives of a distance that is found by a search.
+Expression derivative_or_null(const Operation& operation, int axis,
+                              std::span<const Expression> inputs) {
+  try {
+    return operation.derivative(axis, inputs);
+  } catch (const Error&) {
+    return nullptr;
+  }
+}
+
 constexpr double first_samples = 36000;
 // Where a function jumps no grid makes the error small; the jump lies within a cell of this one.
 constexpr double most_samples_of_jumps = 2.2e6;
@@ -95,6 +105,15 @@ Sampler::Sampler(OperationPointer operation, const std::array<Interval, 3>& box)
   evaluator_ = Evaluator(of_coordinates(operation_));
   const BoundingBox all{{box[0].lo, box[1].lo, box[2].lo}, {box[0].hi, box[1].hi, box[2].hi}};
   lipschitz_ = lipschitz_bound(evaluator_, all);
+  std::vector<Expression> inputs;
+  for (int k = 0; k < info.arity; ++k) inputs.push_back(coordinate(k));
+  curvature_.fill(0);
+  for (int k = 0; k < info.arity; ++k) {
+    // That of a distance has no bound wherever there is a kink.
+    const Expression slope =
+        operation_->is_distance() ? nullptr : derivative_or_null(*operation_, k, inputs);
+    curvature_[size_t(k)] = slope ? lipschitz_bound(Evaluator(slope), all) : infinity;
+  }
 }
 
 SampleGrid Sampler::grid_of(double step) const {
@@ -157,11 +176,29 @@ void Sampler::complain_of(const Vec3& point) const {
               "value where its inputs are " + place);
 }
 
-// Proven: the interpolated value at p is a mean of the cell's corners' with the weights of p, so
+// The interpolated value at p is a mean of the cell's corners' with the weights of p, so
 // for a function of slope <= L it is off by at most L × the mean distance of the corners from p.
 // That is at most the root of the mean square, sqrt(sum over axes of t (1 - t) h²) for a point at
 // the share t of a side h: no more than half of the cell's diagonal. Along a thin axis all samples
-// lie at one end. The function itself is exact to 1e-9, its samples are rounded.
+// lie at one end. Where second derivatives are bounded: interpolation along one axis is off by at
+// most an eighth of that along it times h², and does not enlarge the errors of those before it.
+double Sampler::proven_error(const SampleGrid& grid) const {
+  double squares = 0, bends = 0, thin_squares = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double width = box_[k].hi - box_[k].lo;
+    const double most = grid.varies(k) ? 0.5 * grid.step(k) : width;
+    squares += most * most;
+    if (grid.varies(k)) {
+      bends += curvature_[size_t(k)] * grid.step(k) * grid.step(k) / 8;
+    } else {
+      thin_squares += width * width;
+    }
+  }
+  const double thin_part = thin_squares > 0 ? lipschitz_ * std::sqrt(thin_squares) : 0;
+  return min(lipschitz_ * std::sqrt(squares), thin_part + bends);
+}
+
+// The function itself is exact to 1e-9, its samples are rounded.
 SampleError Sampler::error_of(const Samples& samples, Work& work) const {
   const SampleGrid& grid = samples.grid();
   Probes probes(grid);
@@ -176,14 +213,8 @@ SampleError Sampler::error_of(const Samples& samples, Work& work) const {
     error.measured = max(error.measured, std::abs(samples.value(points[i], nullptr) - exact[i]));
   }
   error.measured += samples.rounding();
-  double squares = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double most = grid.varies(k) ? 0.5 * grid.step(k) : box_[k].hi - box_[k].lo;
-    squares += most * most;
-  }
-  error.proven = rounded_up(
-      lipschitz_ * std::sqrt(squares) + samples.rounding() + 1e-8 * samples.range().magnitude(),
-      16);
+  error.proven =
+      rounded_up(proven_error(grid) + samples.rounding() + 1e-8 * samples.range().magnitude(), 16);
   return error;
 }
 

@@ -29,12 +29,14 @@ class Sampler {
   std::unique_ptr<double[]> values(size_t n, const std::function<Vec3(size_t)>& point,
                                    Work& work) const;
   [[noreturn]] void complain_of(const Vec3& point) const;
+  double proven_error(const SampleGrid& grid) const;
   SampleError error_of(const Samples& samples, Work& work) const;
 
   OperationPointer operation_;
   std::array<Interval, 3> box_;
   Evaluator evaluator_;
   double lipschitz_;
+  std::array<double, 3> curvature_;  // bounds of the second derivatives by each input
 };
 
 }  // namespace sardf::povray

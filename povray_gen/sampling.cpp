@@ -7,6 +7,7 @@
 #include "povray_gen/sampler.hpp"
 #include "sardf/error.hpp"
 #include "sardf/operation_of.hpp"
+#include "sardf/spline_operation.hpp"
 
 namespace sardf::povray {
 
@@ -14,6 +15,8 @@ namespace {
 
 // Normals and roots are found with steps of less than a thousandth of this share.
 constexpr double padding = 1e-3;
+// Bounds are padded by half of this.
+constexpr double padding_of_bounds = 2e-4;
 // The bounds are cut into so many parts along each axis: inputs that turn or bend are enclosed more
 // tightly in parts than in the whole.
 constexpr int parts = 4;
@@ -24,19 +27,16 @@ OperationKey key_of(const Operation& operation) {
   return {operation.info().name, operation.numbers()};
 }
 
-bool is_sampled(const Node& node) {
-  return node.type == Node::Type::operation && !node.operation->has_formula();
-}
-
 /// All uses of one operation.
 struct Uses {
   OperationPointer operation;
-  std::array<Interval, 3> box;  // of the inputs
-  double scale = infinity;      // the least enlargement of lengths on their way to the inputs
+  std::array<Interval, 3> box;      // of the inputs
+  std::array<Interval, 3> visible;  // of those inside the scene's bounds, without their padding
+  double scale = infinity;          // the least enlargement of lengths on their way to the inputs
 };
 
-BoundingBox padded(BoundingBox box) {
-  const double by = padding * box.diagonal();
+BoundingBox padded(BoundingBox box, double share) {
+  const double by = share * box.diagonal();
   for (int k = 0; k < 3; ++k) {
     box.lo[k] -= by;
     box.hi[k] += by;
@@ -79,18 +79,38 @@ double scale_of_inputs(const Node& node, const BoundingBox& bounds) {
   return scale > 0 && scale < infinity ? scale : 1;
 }
 
-std::vector<Uses> uses_of_data(std::span<const Node* const> order, const BoundingBox& bounds) {
+// A spline is flat beyond its box, where samples go on as at its edge just as well; a derivative of
+// one jumps there to 0. A jump within the padding of the bounds would spoil the samples of all
+// cells along the faces of a part that fills the box.
+void keep_to_box_of_spline(Uses& uses) {
+  const std::optional<SplineReach> reach = spline_reach(*uses.operation);
+  if (!reach) return;
+  for (size_t k = 0; k < 3; ++k) {
+    const Interval &whole = reach->box[k], &visible = uses.visible[k];
+    if (reach->jumps[k] && !(whole.lo <= visible.lo && visible.hi <= whole.hi)) continue;
+    uses.box[k] = {std::clamp(uses.box[k].lo, whole.lo, whole.hi),
+                   std::clamp(uses.box[k].hi, whole.lo, whole.hi)};
+  }
+}
+
+std::vector<Uses> uses_of_data(std::span<const Node* const> order, const BoundingBox& scene) {
+  const BoundingBox bounds = padded(scene, padding);
   std::vector<Uses> out;
   std::map<OperationKey, size_t> known;
   for (const Node* node : order) {
     if (!is_sampled(*node)) continue;
     const std::array<Interval, 3> box = box_of_inputs(*node, bounds);
+    const std::array<Interval, 3> visible = box_of_inputs(*node, padded(scene, -padding_of_bounds));
     const auto [at, added] = known.try_emplace(key_of(*node->operation), out.size());
-    if (added) out.push_back({node->operation, box});
+    if (added) out.push_back({node->operation, box, visible});
     Uses& uses = out[at->second];
-    for (int k = 0; k < 3; ++k) uses.box[k] = hull(uses.box[k], box[k]);
+    for (size_t k = 0; k < 3; ++k) {
+      uses.box[k] = hull(uses.box[k], box[k]);
+      uses.visible[k] = hull(uses.visible[k], visible[k]);
+    }
     uses.scale = min(uses.scale, scale_of_inputs(*node, bounds));
   }
+  for (Uses& uses : out) keep_to_box_of_spline(uses);
   return out;
 }
 
@@ -115,11 +135,15 @@ std::vector<Expression> replaced(std::span<const Expression> roots,
 
 }  // namespace
 
+bool is_sampled(const Node& node) {
+  return node.type == Node::Type::operation && !node.operation->has_formula();
+}
+
 Sampling sample_operations(std::span<const Expression> expressions, const BoundingBox& bounds,
                            const std::string& stem, const SamplingOptions& options) {
   Sampling out;
   const std::vector<const Node*> order = topological_order(expressions);
-  const std::vector<Uses> all = uses_of_data(order, padded(bounds));
+  const std::vector<Uses> all = uses_of_data(order, bounds);
   if (all.empty()) {
     out.expressions.assign(expressions.begin(), expressions.end());
     return out;

@@ -3,9 +3,11 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <set>
 
 #include "povray_gen/run.hpp"
 #include "povray_gen/scene_text.hpp"
+#include "povray_gen/stale_files.hpp"
 #include "sardf/error.hpp"
 #include "sardf/output_file.hpp"
 
@@ -43,6 +45,10 @@ std::vector<std::string> write_files(const Scene& scene, const SceneFiles& files
   for (const NamedField& named : scene.fields()) {
     text.fields.push_back({named.name, named.field.expression()});
   }
+  const std::vector<std::string> materials = scene.material_names();
+  for (size_t i = 0; i < scene.fractions().size(); ++i) {
+    text.fractions.push_back({materials.at(i), scene.fractions()[i]});
+  }
   text.color = scene.base_color();
   text.camera = files.camera;
   text.width = files.width;
@@ -53,21 +59,28 @@ std::vector<std::string> write_files(const Scene& scene, const SceneFiles& files
   SamplingOptions sampling;
   sampling.progress = progress;
   sampling.most_samples = std::pow(files.samples, 3);
+  sampling.all_fields = files.all_fields;
   const SceneText made = scene_text(text, include.filename(), sampling);
+  const std::vector<std::string> earlier = density_files_of(include);
+  std::set<std::string> now;
   std::vector<std::unique_ptr<OutputFile>> written;
   const auto begin_file = [&](const fs::path& path) -> OutputFile& {
     written.push_back(std::make_unique<OutputFile>(path));
     return *written.back();
   };
-  std::vector<std::string> sentences;
   for (const SampledPointer& sampled : made.sampled) {
-    sampled->samples().write_to(begin_file(include.parent_path() / sampled->file()), progress);
-    sentences.push_back(sampled->description());
+    const fs::path file = include.parent_path() / sampled->file();
+    sampled->samples().write_to(begin_file(file), progress);
+    now.insert(file);
   }
   begin_file(include).write(made.include);
   begin_file(files.path).write(made.scene);
   for (const auto& file : written) file->commit();
-  return sentences;
+  for (const std::string& file : earlier) {
+    std::error_code left_over;  // does no harm
+    if (!now.contains(file)) fs::remove(file, left_over);
+  }
+  return made.sentences;
 }
 
 void render_files(const SceneFiles& files, const std::string& image, const Progress& progress,

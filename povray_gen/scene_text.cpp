@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "povray_gen/scene_samples.hpp"
 #include "povray_gen/vector_text.hpp"
 #include "sardf/certify.hpp"
 #include "sardf/error.hpp"
@@ -46,21 +47,6 @@ Gradient gradient_of(const PovrayScene& scene, bool exact) {
               "' has none; rewrite it, or state one: \"lipschitz\": L");
 }
 
-// Puts sampled functions in place of what has no formula.
-std::vector<SampledPointer> sample_fields(PovrayScene& scene, const std::string& stem,
-                                          const SamplingOptions& options) {
-  std::vector<Expression*> all{&scene.solid};
-  for (NamedExpression& field : scene.fields) all.push_back(&field.expression);
-  for (Expression& channel : scene.color) {
-    if (channel) all.push_back(&channel);
-  }
-  std::vector<Expression> exact;
-  for (const Expression* expression : all) exact.push_back(*expression);
-  const Sampling sampling = sample_operations(exact, scene.bounds, stem, options);
-  for (size_t i = 0; i < all.size(); ++i) *all[i] = sampling.expressions[i];
-  return sampling.functions;
-}
-
 void check_bounds(const BoundingBox& bounds) {
   for (int i = 0; i < 3; ++i) {
     const double size = bounds.hi[i] - bounds.lo[i];
@@ -92,9 +78,9 @@ std::string three_function_pigment(const std::string& name,
   return out + "  }\n}\n";
 }
 
-std::string color_pigment(const PovrayScene& scene, const std::string& name,
+std::string color_pigment(const SceneSamples& samples, const std::string& name,
                           FunctionWriter& writer) {
-  const std::array<Expression, 3>& color = scene.color;
+  const std::array<Expression, 3>& color = samples.scene.color;
   Vec3 even{0.8, 0.8, 0.8};
   bool is_even = true;
   for (int i = 0; i < 3; ++i) {
@@ -103,9 +89,12 @@ std::string color_pigment(const PovrayScene& scene, const std::string& name,
     even[i] = color[i]->value;
   }
   if (is_even) return "#declare " + name + " = pigment { rgb " + vector_text(even) + " }\n";
-  const std::vector<std::string> functions = writer.declare(
-      std::vector<NamedExpression>{{"red", color[0]}, {"green", color[1]}, {"blue", color[2]}});
-  return three_function_pigment(name, {functions[0], functions[1], functions[2]});
+  const std::vector<std::string> functions =
+      writer.declare(std::vector<NamedExpression>{{"red", color[0], samples.color_comments[0]},
+                                                  {"green", color[1], samples.color_comments[1]},
+                                                  {"blue", color[2], samples.color_comments[2]}});
+  return comment_lines(samples.fractions_comment) +
+         three_function_pigment(name, {functions[0], functions[1], functions[2]});
 }
 
 // The function decreases outwards: central differences, backward minus forward, point outwards.
@@ -156,13 +145,14 @@ std::string isosurface_text(const PovrayScene& scene, const Identifiers& ids,
        gradient.proven ? "proven" : "stated by the scene, not proven", ids.csg});
 }
 
-std::string include_text(const PovrayScene& scene, Names& names, const Identifiers& ids,
+std::string include_text(const SceneSamples& samples, Names& names, const Identifiers& ids,
                          const Gradient& gradient) {
   FunctionWriter writer(names);
+  const PovrayScene& scene = samples.scene;
   std::vector<NamedExpression> all(scene.fields);
-  all.push_back({"solid", scene.solid});
+  all.push_back({"solid", scene.solid, samples.solid_comment});
   const std::string solid = writer.declare(all).back();
-  const std::string pigment = color_pigment(scene, ids.pigment, writer);
+  const std::string pigment = color_pigment(samples, ids.pigment, writer);
   const double step = normal_step * scene.bounds.diagonal();
   std::string out = filled(
       "// {}\n"
@@ -170,7 +160,7 @@ std::string include_text(const PovrayScene& scene, Names& names, const Identifie
       "// object { {} } is the solid in its colours. {}() is the solid alone\n"
       "// and {} its colours, for a texture of your own. Fields are functions of x, y, z,\n"
       "// positive inside.\n"
-      "//\n"
+      "{}//\n"
       "// To use it in difference, intersection, merge or clipped_by, write\n"
       "//   #declare {} = yes;\n"
       "// before including this file, so that all intersections are found (at most 10 on a ray), "
@@ -178,8 +168,9 @@ std::string include_text(const PovrayScene& scene, Names& names, const Identifie
       "// give the texture to the outermost object: a cut face has that one's texture, or none.\n"
       "#ifndef ({})\n#declare {} = version;\n#version 3.7;\n"
       "#ifndef ({}) #declare {} = no; #end\n\n",
-      {one_line(scene.title), ids.object, ids.isosurface, ids.pigment, ids.csg, ids.guard,
-       ids.guard, ids.csg, ids.csg});
+      {one_line(scene.title), ids.object, ids.isosurface, ids.pigment,
+       comment_lines(one_line(samples.left_out_sentence())), ids.csg, ids.guard, ids.guard, ids.csg,
+       ids.csg});
   out += writer.text() + "\n" + isosurface_text(scene, ids, solid, gradient) + pigment +
          normal_pigment(ids.normal_pigment, solid, step, names);
   out += filled(
@@ -228,15 +219,19 @@ SceneText scene_text(const PovrayScene& exact_scene, const std::string& include_
     throw Error("POV-Ray cannot include a file whose name has a quotation mark", include_name);
   }
   SceneText out;
-  PovrayScene scene = exact_scene;
-  out.sampled = sample_fields(scene, std::filesystem::path(include_name).stem(), sampling);
+  const SceneSamples samples =
+      sample_scene(exact_scene, std::filesystem::path(include_name).stem(), sampling);
+  const PovrayScene& scene = samples.scene;
+  out.sampled = samples.functions;
+  out.errors = samples.errors;
+  out.sentences = samples.sentences();
   const Gradient gradient = gradient_of(scene, scene.solid == exact_scene.solid);
   Names names(scene.title);
   const Identifiers ids(names);
   out.prefix = names.prefix();
   out.max_gradient = gradient_margin * gradient.bound;
   out.proven = gradient.proven;
-  out.include = include_text(scene, names, ids, gradient);
+  out.include = include_text(samples, names, ids, gradient);
   out.scene =
       filled("// {}\n#version 3.7;\nglobal_settings { assumed_gamma 1.0 }\n#include \"{}\"\n\n",
              {one_line(scene.title), include_name});

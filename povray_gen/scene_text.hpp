@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "povray_gen/field_error.hpp"
 #include "povray_gen/function_text.hpp"
 #include "povray_gen/sampling.hpp"
 #include "sardf/camera.hpp"
@@ -25,6 +26,8 @@ struct PovrayScene {
   BoundingBox bounds;                   ///< the solid is empty outside; the isosurface's container
   std::vector<NamedExpression> fields;  ///< each becomes a function of its own
   std::array<Expression, 3> color{};    ///< linear Rec.709; null: a light grey
+  /// Not written: of those with sampled functions in them, the errors are stated.
+  std::vector<NamedExpression> fractions;
   Camera camera;
   int width = 320;  ///< pixels; the camera's picture depends on their ratio
   int height = 240;
@@ -43,6 +46,8 @@ struct SceneText {
   bool proven = true;       ///< false: the bound is the stated one
   /// Each must be written as its file() beside the others.
   std::vector<SampledPointer> sampled;
+  std::vector<StatedError> errors;     ///< of what has sampled functions in it
+  std::vector<std::string> sentences;  ///< for users: of samples, errors, and what is left out
 };
 
 /// The two files' texts; the scene includes `include_name`, a file of its own folder. Throws Error

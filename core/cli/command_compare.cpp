@@ -8,6 +8,7 @@
 #include "cli/commands.hpp"
 #include "cli/compare_images.hpp"
 #include "cli/compare_report.hpp"
+#include "cli/picture_size.hpp"
 #include "cli/render_blender.hpp"
 #include "cli/render_povray.hpp"
 #include "cli/work_queue.hpp"
@@ -39,21 +40,7 @@ struct Item {
   Camera camera;
 };
 
-struct Size {
-  int width = 0, height = 0;
-};
-
-Size parse_size(const std::string& text) {
-  Size size;
-  char end = 0;
-  if (std::sscanf(text.c_str(), "%dx%d%c", &size.width, &size.height, &end) != 2 ||
-      size.width < 8 || size.height < 8) {
-    throw Error("the size is '" + text + "'; WIDTHxHEIGHT in pixels is accepted, such as 640x480");
-  }
-  return size;
-}
-
-Item make_item(const Options& options, const std::string& path, const Size& size) {
+Item make_item(const Options& options, const std::string& path, const PictureSize& size) {
   Item item;
   item.path = path;
   item.name = fs::path(path).stem();
@@ -85,7 +72,7 @@ class Log {
   std::mutex guard_;
 };
 
-std::vector<std::function<void()>> jobs_of(const Options& options, const Size& size,
+std::vector<std::function<void()>> jobs_of(const Options& options, const PictureSize& size,
                                            const std::vector<Item>& items,
                                            const std::vector<Blender>& blenders, Log& log) {
   std::vector<std::function<void()>> jobs;
@@ -181,7 +168,7 @@ bool report(const Options& options, const std::vector<Item>& items,
 }
 
 void compare(Options options) {
-  const Size size = parse_size(options.size);
+  const PictureSize size = parse_size(options.size);
   povray::find_povray();
   std::vector<Blender> blenders;
   for (const std::string& program : options.blenders) {

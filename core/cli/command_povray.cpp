@@ -24,9 +24,9 @@ void write_and_render(Options& options) {
   options.files.camera = options.camera.empty()
                              ? scene_camera(scene, options.files.width, options.files.height)
                              : read_camera(options.camera);
-  const std::vector<std::string> sampled =
+  const std::vector<std::string> sentences =
       povray::write_files(scene, options.files, terminal_progress("sampling"));
-  for (const std::string& sentence : sampled) std::cout << sentence << "\n";
+  for (const std::string& sentence : sentences) std::cout << sentence << "\n";
   std::cout << options.files.path << "\n";
   if (options.image.empty()) return;
   render_povray(options.files, options.image, terminal_progress("rendering"));
@@ -60,6 +60,8 @@ void add_povray(CLI::App& app) {
                    "What has no formula is sampled at up to this number of points, cubed")
       ->check(CLI::Range(8, 512))
       ->capture_default_str();
+  command->add_flag("--all-fields", options->files.all_fields,
+                    "Also write fields that need samples which the picture does not");
   command->callback([options] { write_and_render(*options); });
 }
 

@@ -18,9 +18,11 @@ void add_eval(CLI::App& app);
 void add_mesh(CLI::App& app);
 void add_bake(CLI::App& app);
 void add_povray(CLI::App& app);
+void add_render(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_solve(CLI::App& app);
 void add_schema(CLI::App& app);
+void add_image(CLI::App& app);
 
 /// A bar on standard error where that is a terminal, nothing elsewhere; Ctrl-C cancels.
 Progress terminal_progress(const std::string& label);

@@ -64,9 +64,11 @@ int main(int count, char** arguments) {
   sardf::add_mesh(app);
   sardf::add_bake(app);
   sardf::add_povray(app);
+  sardf::add_render(app);
   sardf::add_compare(app);
   sardf::add_compare_images(app);
   sardf::add_solve(app);
   sardf::add_schema(app);
+  sardf::add_image(app);
   return run(app, count, arguments);
 }

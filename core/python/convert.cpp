@@ -63,6 +63,25 @@ std::vector<std::array<double, N>> points_from(const ParameterInfo& p, const py:
   return out;
 }
 
+bool has_two(const py::handle& value) {
+  return py::hasattr(value, "__len__") && !py::isinstance<py::str>(value) && py::len(value) == 2;
+}
+
+// Those of two numbers have z = 0.
+std::vector<Vec3> points3_from(const ParameterInfo& p, const py::handle& value) {
+  if (py::isinstance<py::str>(value) || !py::isinstance<py::iterable>(value)) wrong_type(p, value);
+  std::vector<Vec3> out;
+  for (const py::handle& element : value) {
+    if (has_two(element)) {
+      const Vec2 flat = vector_from<2>(p, element);
+      out.push_back({flat[0], flat[1], 0});
+    } else {
+      out.push_back(vector_from<3>(p, element));
+    }
+  }
+  return out;
+}
+
 std::vector<double> numbers_from(const ParameterInfo& p, const py::handle& value) {
   if (py::isinstance<py::str>(value) || !py::isinstance<py::iterable>(value)) wrong_type(p, value);
   std::vector<double> out;
@@ -208,7 +227,7 @@ Value value_from(const ParameterInfo& p, const py::handle& value) {
     case ParameterType::points2:
       return points_from<2>(p, value);
     case ParameterType::points3:
-      return points_from<3>(p, value);
+      return points3_from(p, value);
     case ParameterType::optional_field:
       if (value.is_none()) return {};
       [[fallthrough]];

@@ -9,6 +9,8 @@
 #include "sardf/bake_channels.hpp"
 #include "sardf/camera_file.hpp"
 #include "sardf/error.hpp"
+#include "sardf/pulse.hpp"
+#include "sardf/render.hpp"
 #include "sardf/scene_file.hpp"
 #include "sardf/surface.hpp"
 
@@ -114,13 +116,36 @@ py::dict bake_maps(const Scene& scene, const Mesh& surface, int size,
   return out;
 }
 
+Camera camera_from(const Scene& scene, const py::object& camera, int width, int height) {
+  if (camera.is_none()) return scene_camera(scene, width, height);
+  return camera_from_text(py::str(py::module_::import("json").attr("dumps")(camera)));
+}
+
+py::array_t<float> render_scene(const Scene& scene, int width, int height, const std::string& look,
+                                const py::object& camera, std::optional<double> tolerance,
+                                std::optional<Vec3> background, bool depth, bool normals,
+                                int samples, int threads, py::object callable) {
+  RenderOptions options;
+  options.look = render_look(look);
+  options.camera = camera_from(scene, camera, width, height);
+  options.width = width;
+  options.height = height;
+  options.tolerance = tolerance;
+  options.background = background;
+  options.depth = depth;
+  options.normals = normals;
+  options.samples = samples;
+  options.threads = threads;
+  PythonProgress progress(std::move(callable));
+  return to_array(
+      progress.run([&](const Progress& report) { return render(scene, options, report).image; }));
+}
+
 void write_povray(const Scene& scene, const std::string& path, const std::string& render,
                   const py::object& camera, const std::string& look, int width, int height,
-                  int samples, py::object callable) {
-  povray::SceneFiles files{path, look, {}, width, height, samples};
-  files.camera = camera.is_none()
-                     ? scene_camera(scene, width, height)
-                     : camera_from_text(py::str(py::module_::import("json").attr("dumps")(camera)));
+                  int samples, bool all_fields, py::object callable) {
+  povray::SceneFiles files{path, look, {}, width, height, samples, all_fields};
+  files.camera = camera_from(scene, camera, width, height);
   if (!render.empty()) povray::find_povray();
   PythonProgress progress(std::move(callable));
   progress.run([&](const Progress& report) {
@@ -229,14 +254,32 @@ void bind_scenes(py::module_& m) {
            "A camera that frames the object: matrix_world, lens (mm), sensor_width, ...")
       .def("povray", &write_povray, py::arg("path"), py::arg("render") = "",
            py::arg("camera") = py::none(), py::arg("look") = "shaded", py::arg("width") = 640,
-           py::arg("height") = 480, py::arg("samples") = 256, py::arg("progress") = py::none(),
+           py::arg("height") = 480, py::arg("samples") = 256, py::arg("all_fields") = false,
+           py::arg("progress") = py::none(),
            "Writes path (.pov), the .inc beside it, and density files (.df3) of what has no "
            "formula, "
-           "whose errors the .inc states, for POV-Ray 3.7; renders them to `render` "
+           "whose errors, and those of all that is computed from them, the .inc states, for "
+           "POV-Ray 3.7; renders them to `render` "
            "(.exr or .png) unless it is empty. camera: as camera() gives it; look: shaded, flat "
            "(the colours alone) or normals; samples: the most of what has no formula, as the edge "
            "of "
-           "a cube, 8 to 512.")
+           "a cube, 8 to 512; all_fields: also write the fields that need samples which the "
+           "picture does not.")
+      .def("render", &render_scene, py::arg("width") = 640, py::arg("height") = 480,
+           py::arg("look") = "shaded", py::arg("camera") = py::none(),
+           py::arg("tolerance") = py::none(), py::arg("background") = py::none(),
+           py::arg("depth") = false, py::arg("normals") = false, py::arg("samples") = 1,
+           py::arg("threads") = 0, py::arg("progress") = py::none(),
+           "A picture by certified ray casting: float32 (height, width, 4), row 0 at the top, "
+           "linear colour times alpha, then alpha. look: shaded, flat (the colours alone) or "
+           "normals (0.5 + 0.5 n). camera: as camera() gives it. tolerance (scene units): no "
+           "stretch of the solid that is longer along a ray is missed; none: 1e-4 of the bounds' "
+           "diagonal. background: linear (r, g, b); none: alpha is 0 there. depth: one channel "
+           "more, the depth along the view in scene units, inf where nothing is. normals: three "
+           "channels more, the outward unit normal. samples: rays along each side of a pixel, 1 to "
+           "8, "
+           "more smooth edges. threads: at most so many, 0: all; the picture "
+           "does not depend on it.")
       .def("with_blend", &with_blend, py::arg("blend"),
            "The scene with every union, intersection and difference joined by `blend` in place of "
            "its own.")

@@ -4,6 +4,8 @@
 #include <queue>
 #include <unordered_map>
 
+#include "sardf/error.hpp"
+
 namespace sardf {
 
 namespace {
@@ -53,9 +55,14 @@ struct Part {
   bool operator<(const Part& other) const { return length < other.length; }
 };
 
+// 0 where there is no gradient, or none is known (data_operation.hpp).
 double steepest_at(const Evaluator& evaluator, const Vec3& point) {
   Vec3 gradient;
-  evaluator.gradients(point.data(), 1, nullptr, gradient.data());
+  try {
+    evaluator.gradients(point.data(), 1, nullptr, gradient.data());
+  } catch (const Error&) {
+    return 0;
+  }
   const double length = norm(gradient);
   return std::isnan(length) ? 0 : length;
 }

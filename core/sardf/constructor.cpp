@@ -153,12 +153,12 @@ std::string type_name(ParameterType type) {
     case ParameterType::points2:
       return "a list of points of 2 numbers";
     case ParameterType::points3:
-      return "a list of points of 3 numbers";
+      return "a list of points of 2 or 3 numbers";
     case ParameterType::point_grid:
       return "a list of rows of points of 3 numbers";
     case ParameterType::field:
     case ParameterType::optional_field:
-      return "a field";
+      return "a field or a number";
     case ParameterType::fields:
       return "a list of fields";
     case ParameterType::values:

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "sardf/arithmetic.hpp"
+#include "sardf/error.hpp"
 #include "sardf/operation_of.hpp"
 
 namespace sardf {
@@ -144,16 +145,17 @@ double PointSet::accuracy(double distance) const {
 
 namespace {
 
+/// Row k: the gradient of coordinate k of the nearest point.
+using Jacobian = std::array<Vec3, 3>;
+
 /// The searches of the last few blocks of points on this thread.
 class RecentSearches {
  public:
   const std::vector<Nearest>& of(const PointSet& set, const double* const* in, size_t n) {
-    for (Block& block : blocks_) {
-      if (block.is_of(set, in, n)) return block.found;
-    }
-    Block& oldest = blocks_[next_++ % blocks_.size()];
-    oldest.fill(set, in, n);
-    return oldest.found;
+    return block_of(set, in, n).found;
+  }
+  const std::vector<Jacobian>& jacobians(const PointSet& set, const double* const* in, size_t n) {
+    return block_of(set, in, n).derived(set);
   }
 
  private:
@@ -161,6 +163,7 @@ class RecentSearches {
     uint64_t serial = 0;
     std::array<std::vector<double>, 3> at;
     std::vector<Nearest> found;
+    std::vector<Jacobian> jacobians;  // empty until they are asked for
 
     bool is_of(const PointSet& set, const double* const* in, size_t n) const {
       if (serial != set.serial() || found.size() != n) return false;
@@ -171,6 +174,7 @@ class RecentSearches {
     }
     void fill(const PointSet& set, const double* const* in, size_t n) {
       serial = 0;
+      jacobians.clear();
       for (int k = 0; k < 3; ++k) at[k].assign(in[k], in[k] + n);
       found.resize(n);
       for (size_t i = 0; i < n; ++i) {
@@ -185,15 +189,36 @@ class RecentSearches {
       }
       serial = set.serial();
     }
+    const std::vector<Jacobian>& derived(const PointSet& set) {
+      if (!jacobians.empty()) return jacobians;
+      jacobians.resize(found.size());
+      for (size_t i = 0; i < found.size(); ++i) {
+        jacobians[i] = set.jacobian({at[0][i], at[1][i], at[2][i]}, found[i]);
+      }
+      return jacobians;
+    }
   };
+
+  Block& block_of(const PointSet& set, const double* const* in, size_t n) {
+    for (Block& block : blocks_) {
+      if (block.is_of(set, in, n)) return block;
+    }
+    Block& oldest = blocks_[next_++ % blocks_.size()];
+    oldest.fill(set, in, n);
+    return oldest;
+  }
 
   std::array<Block, 8> blocks_;
   size_t next_ = 0;
 };
 
-const std::vector<Nearest>& searched(const PointSet& set, const double* const* in, size_t n) {
+RecentSearches& recent_searches() {
   thread_local RecentSearches recent;
-  return recent.of(set, in, n);
+  return recent;
+}
+
+const std::vector<Nearest>& searched(const PointSet& set, const double* const* in, size_t n) {
+  return recent_searches().of(set, in, n);
 }
 
 struct Ball {
@@ -273,6 +298,58 @@ class DistanceOperation final : public DataOperation {
   PointSetPointer set_;
 };
 
+/// The derivative of a coordinate of the nearest point by a coordinate of the point.
+///
+/// Half the squared distance less half of |p|² is a minimum of linear functions, so concave, and
+/// its second derivatives are those of the nearest point, negated: on the diagonal these are not
+/// negative, also across the jumps. Towards a centre of curvature they grow beyond all bounds.
+class JacobianOperation final : public DataOperation {
+ public:
+  /// The first axis is not after the second.
+  JacobianOperation(PointSetPointer set, std::pair<int, int> axes)
+      : DataOperation(
+            {set->name() + "_nearest_" + char('x' + axes.first) + "_by_" + char('x' + axes.second),
+             Kind::internal, 3, "A derivative of a coordinate of the nearest point."},
+            set->identity()),
+        set_(set),
+        axes_(axes) {}
+
+  void evaluate(const double* const* in, double* out, size_t n) const override {
+    const std::vector<Nearest>& found = searched(*set_, in, n);
+    const std::vector<Jacobian>& derived = recent_searches().jacobians(*set_, in, n);
+    for (size_t i = 0; i < n; ++i) {
+      const double value = derived[i][size_t(axes_.first)][size_t(axes_.second)];
+      // Where rounding is all there is left, it may be of either sign, and overflow.
+      const bool is_lost = !std::isfinite(value) || (axes_.first == axes_.second && value < 0);
+      out[i] = std::isnan(found[i].distance) ? found[i].distance : is_lost ? 0 : value;
+    }
+  }
+  using DataOperation::evaluate;
+
+  void partials(const double* const*, double*, double* const*, size_t) const override { fail(); }
+
+  Interval interval(const Interval*) const override {
+    return axes_.first == axes_.second ? Interval{0, infinity} : Interval::all();
+  }
+
+  Slope slope(const Slope* in) const override {
+    const std::array<Interval, 3> values{in[0].value, in[1].value, in[2].value};
+    const std::array<Interval, 3> partials{Interval::all(), Interval::all(), Interval::all()};
+    return slope_from(in, interval(values.data()), partials, infinity);
+  }
+
+  Expression derivative(int, std::span<const Expression>) const override { fail(); }
+
+ private:
+  [[noreturn]] void fail() const {
+    throw Error("third derivatives of a distance found by a search ('" + set_->name() +
+                "') are not known");
+  }
+
+  PointSetPointer set_;
+  std::pair<int, int> axes_;
+};
+
 class NearestOperation final : public DataOperation {
  public:
   NearestOperation(PointSetPointer set, int axis)
@@ -291,11 +368,10 @@ class NearestOperation final : public DataOperation {
 
   void partials(const double* const* in, double* out, double* const* partial,
                 size_t n) const override {
-    const std::vector<Nearest>& found = searched(*set_, in, n);
+    evaluate(in, out, n);
+    const std::vector<Jacobian>& derived = recent_searches().jacobians(*set_, in, n);
     for (size_t i = 0; i < n; ++i) {
-      out[i] = coordinate_of(found[i]);
-      const Vec3 row = set_->jacobian({in[0][i], in[1][i], in[2][i]}, found[i])[size_t(axis_)];
-      for (int k = 0; k < 3; ++k) partial[k][i] = row[k];
+      for (int k = 0; k < 3; ++k) partial[k][i] = derived[i][size_t(axis_)][k];
     }
   }
 
@@ -315,6 +391,11 @@ class NearestOperation final : public DataOperation {
     const std::array<Interval, 3> values{in[0].value, in[1].value, in[2].value};
     const std::array<Interval, 3> partials{Interval::all(), Interval::all(), Interval::all()};
     return slope_from(in, interval(values.data()), partials, infinity);
+  }
+
+  // Symmetric: p less the nearest point is the gradient of half the squared distance.
+  Expression derivative(int k, std::span<const Expression> inputs) const override {
+    return call(std::make_shared<JacobianOperation>(set_, std::minmax(axis_, k)), inputs);
   }
 
  private:

@@ -73,6 +73,7 @@ class PointSet {
   /// 0: there it is no distance, and its slope is infinite. With an infinite radius: anywhere.
   virtual bool may_jump(const Vec3& centre, double radius) const;
   /// Derivatives of the nearest point by the point: row k is the gradient of its coordinate k.
+  /// Symmetric and not negative definite; where the nearest point jumps, of the one found.
   virtual std::array<Vec3, 3> jacobian(const Vec3& point, const Nearest& at) const = 0;
   /// Encloses the set.
   virtual std::array<Interval, 3> bounds() const = 0;
@@ -96,7 +97,8 @@ using PointSetPointer = std::shared_ptr<const PointSet>;
 /// The distance to a set, as an operation on a point's three coordinates. The searches of one block
 /// of points are shared by all operations on it, the derivatives' included.
 OperationPointer distance_operation(PointSetPointer set);
-/// Coordinate 0, 1 or 2 of the nearest point.
+/// Coordinate 0, 1 or 2 of the nearest point. Its derivatives are operations of the same kind, by
+/// PointSet::jacobian; those have none: Error.
 OperationPointer nearest_operation(PointSetPointer set, int axis);
 
 }  // namespace sardf

@@ -3,7 +3,8 @@
 // Every operation's formula is replayed in the algebra of derivatives, so what comes out consists
 // of the elementary functions of the formula language: it has bounds, gradients, batches and
 // POV-Ray text like any field, and can be differentiated again. An operation without a formula
-// gives its own first derivative (Operation::derivative).
+// gives its own first derivative (Operation::derivative): fitted B-splines have them of every
+// order, distances that a search finds of the first and the second.
 //
 // At a kink (min, max, abs, select) the derivative is that of the branch that gives the value, the
 // second argument's where both do, as for gradients (numbers/gradient.hpp). Where a length vanishes
@@ -11,7 +12,7 @@
 // Blends are differentiated as they stand: joined_by (blend.hpp) replaces none of a derivative.
 //
 // The work is linear in the number of nodes, and nothing recurses over them. Errors: an operation
-// without a formula whose derivative is not known.
+// without a formula whose derivative is not known, as the third one of a searched distance.
 #pragma once
 
 #include <span>

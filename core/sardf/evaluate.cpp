@@ -16,7 +16,11 @@ namespace {
 constexpr size_t block_size = Evaluator::block_size;
 constexpr size_t widest_lanes = 16;
 
-size_t padded(size_t n) { return (n + widest_lanes - 1) / widest_lanes * widest_lanes; }
+// Floats are evaluated in whole lanes.
+template <class T>
+size_t padded(size_t n) {
+  return sizeof(T) == sizeof(double) ? n : (n + widest_lanes - 1) / widest_lanes * widest_lanes;
+}
 
 void run(const Instruction& i, const float* const* in, float* out, size_t n) {
   i.operation->kernels().value(i.operation->object(), in, out, n);
@@ -43,10 +47,10 @@ void load(const Tape& tape, const T* const* xyz, size_t n, T* registers) {
   for (int axis = 0; axis < 3; ++axis) {
     T* to = registers + axis * block_size;
     std::copy_n(xyz[axis], n, to);
-    std::fill(to + n, to + padded(n), xyz[axis][n - 1]);
+    std::fill(to + n, to + padded<T>(n), xyz[axis][n - 1]);
   }
   for (const Tape::Constant& c : tape.constants()) {
-    std::fill_n(registers + c.reg * block_size, padded(n), T(c.value));
+    std::fill_n(registers + c.reg * block_size, padded<T>(n), T(c.value));
   }
 }
 
@@ -57,7 +61,7 @@ T* const* place_registers(const Tape& tape, T* registers, size_t n, T* const* ou
   thread_local Scratch<T*> places;
   T** at = places.get(tape.registers());
   for (size_t r = 0; r < tape.registers(); ++r) at[r] = registers + r * block_size;
-  if (n != padded(n)) return at;
+  if (n != padded<T>(n)) return at;
   const size_t first_result = 3 + tape.constants().size();
   for (size_t k = 0; k < tape.outputs().size(); ++k) {
     const uint32_t r = tape.outputs()[k];
@@ -74,7 +78,7 @@ void evaluate_block(const Tape& tape, const T* const* xyz, size_t n, T* const* o
   for (const Instruction& i : tape.instructions()) {
     std::array<const T*, max_arity> in;
     for (size_t k = 0; k < in.size(); ++k) in[k] = at[i.in[k]];
-    run(i, in.data(), at[i.out], padded(n));
+    run(i, in.data(), at[i.out], padded<T>(n));
   }
   for (size_t k = 0; k < tape.outputs().size(); ++k) {
     const T* result = at[tape.outputs()[k]];
@@ -97,7 +101,7 @@ void chain(const double* by, const double* inner, double* outer, size_t n, bool 
 template <class T>
 void gradient_of_block(const Tape& tape, const T* const* xyz, size_t n, T* out,
                        T* const* gradient) {
-  const size_t m = padded(n), registers_end = tape.registers() * block_size;
+  const size_t m = padded<T>(n), registers_end = tape.registers() * block_size;
   T* registers = scratch<T>(4 * registers_end + max_arity * block_size);
   T* by[max_arity];
   for (int k = 0; k < max_arity; ++k) by[k] = registers + 4 * registers_end + k * block_size;

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "sardf/progress.hpp"
@@ -41,6 +42,7 @@ class Evaluator {
   Evaluator() = default;
   explicit Evaluator(std::span<const Expression> outputs) : tape_(outputs) {}
   explicit Evaluator(const Expression& output) : tape_(output) {}
+  explicit Evaluator(Tape tape) : tape_(std::move(tape)) {}
 
   const Tape& tape() const { return tape_; }
   size_t outputs() const { return tape_.outputs().size(); }

@@ -38,18 +38,32 @@ Expression to_chain(const Expression& a, const Expression& b, const Contour& cor
   return call(make_operation(chain), {a, b, constant(0)});
 }
 
-Faces faces_of_box(const Box& box) {
-  return {6, [box](const Chosen& chosen) {
+// The flat parts of a box whose edges are rounded by a radius, which may be 0.
+Faces faces_of_box(const Vec3& center, const Vec3& size, double radius) {
+  return {6, [=](const Chosen& chosen) {
             return nearest(chosen, [&](size_t face) {
               const size_t across = face / 2, b = (across + 1) % 3, c = (across + 2) % 3;
-              const Vec3 half = 0.5 * box.size;
+              const Vec3 half = 0.5 * size;
               const auto from = [&](size_t axis, double place) {
                 return coordinate(int(axis)) - constant(place);
               };
               const double side = face % 2 ? half[across] : -half[across];
-              return function("length3", {from(across, box.center[across] + side),
-                                          beyond(from(b, box.center[b]), half[b]),
-                                          beyond(from(c, box.center[c]), half[c])});
+              return function("length3", {from(across, center[across] + side),
+                                          beyond(from(b, center[b]), half[b] - radius),
+                                          beyond(from(c, center[c]), half[c] - radius)});
+            });
+          }};
+}
+
+Faces faces_of_rectangle(const Box2d& box) {
+  return {4, [box](const Chosen& chosen) {
+            return nearest(chosen, [&](size_t edge) {
+              const size_t across = edge / 2, along = 1 - across;
+              const double half = 0.5 * box.size[across];
+              const double place = box.center[across] + (edge % 2 ? half : -half);
+              return length(coordinate(int(across)) - constant(place),
+                            beyond(coordinate(int(along)) - constant(box.center[along]),
+                                   0.5 * box.size[along]));
             });
           }};
 }
@@ -126,10 +140,11 @@ Error no_faces(const Field& solid) {
   const Construction* made = solid.construction();
   std::string what = "a formula";
   if (made && made->constructor) what = "'" + made->constructor->name + "'";
-  return Error("the solid is " + what +
-               ", whose faces have no numbers; they are counted for box, cylinder with a height, "
-               "cone, polygon, extrude of a polygon, and these moved by translate, rotate, scale "
-               "or mirror");
+  return Error(
+      "the solid is " + what +
+      ", whose faces have no numbers; they are counted for box, rounded_box, cylinder with a "
+      "height, cone, box2d, polygon, extrude of the last two, and these moved by "
+      "translate, rotate, scale or mirror");
 }
 
 Chosen chosen_faces(const std::vector<double>& numbers, size_t count) {
@@ -157,7 +172,15 @@ Faces numbered_faces(const Field& solid) {
   const Construction* made = solid.construction();
   if (!made || !made->constructor) return {};
   const std::string& name = made->constructor->name;
-  if (name == Box::name) return faces_of_box(with_arguments<Box>(made->arguments));
+  if (name == Box::name) {
+    const auto box = with_arguments<Box>(made->arguments);
+    return faces_of_box(box.center, box.size, 0);
+  }
+  if (name == RoundedBox::name) {
+    const auto box = with_arguments<RoundedBox>(made->arguments);
+    return faces_of_box(box.center, box.size, box.radius);
+  }
+  if (name == Box2d::name) return faces_of_rectangle(with_arguments<Box2d>(made->arguments));
   if (name == Cylinder::name) {
     const auto bar = with_arguments<Cylinder>(made->arguments);
     if (!bar.height) return {};

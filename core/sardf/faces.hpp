@@ -18,9 +18,11 @@ struct Faces {
 
 /// `count` is 0 for a solid without numbered faces. Numbered are those of
 ///   box       -x, +x, -y, +y, -z, +z
+///   rounded_box  the same: its flat parts
 ///   cylinder with a height, and cone:  bottom, top, side
+///   box2d     -x, +x, -y, +y; independent of z
 ///   polygon   edge i from corner i to the next; independent of z
-///   extrude   the edges of its polygon as sheets, then the bottom and the top
+///   extrude   the edges of its box2d or polygon as sheets, then the bottom and the top
 /// and of these when they are moved by translate, rotate, scale or mirror. Faces are closed: they
 /// hold their edges.
 Faces numbered_faces(const Field& solid);
@@ -44,10 +46,11 @@ struct Boundary {
                 "an estimate of the distance, good to first order away from the part's rim"},
       &Boundary::where);
     v(Parameter{"faces",
-                "only these faces, exactly. Of a box 0 to 5 are -x, +x, -y, +y, -z, +z; of a "
-                "cylinder with a height and of a cone 0 is the bottom, 1 the top, 2 the side; edge "
-                "i of a polygon goes from corner i to the next; an extruded polygon has its edges, "
-                "then the bottom, then the top. Moved solids keep their numbers"},
+                "only these faces, exactly. Of a box 0 to 5 are -x, +x, -y, +y, -z, +z, and of a "
+                "rounded box its flat parts; of a cylinder with a height and of a cone 0 is the "
+                "bottom, 1 the top, 2 the side; edges of a box2d are -x, +x, -y, +y; edge i of a "
+                "polygon goes from corner i to the next; what is extruded has its edges, then the "
+                "bottom, then the top. Moved solids keep their numbers"},
       &Boundary::faces);
   }
   /// Throws Error for faces that the solid does not have.

@@ -9,6 +9,7 @@
 #include "sardf/arithmetic.hpp"
 #include "sardf/error.hpp"
 #include "sardf/fit_bounds.hpp"
+#include "sardf/pulse.hpp"
 #include "sardf/spline_operation.hpp"
 
 namespace sardf {
@@ -18,12 +19,6 @@ namespace {
 constexpr double most_bytes = 0x1p31;
 // A quadrature that finds a third of the energy too little does not see the function it minimises.
 constexpr double finer_energy_allowed = 1.5;
-
-/// Shares from `from` to `to` of the whole.
-Progress part_of(const Progress& progress, double from, double to) {
-  if (!progress) return {};
-  return [&progress, from, to](double share) { return progress(from + (to - from) * share); };
-}
 
 /// Never reports less than before: 0 is said while a part of the work goes on.
 Progress rising(const Progress& progress) {

@@ -222,7 +222,7 @@ class LeafSearch {
 
 }  // namespace
 
-std::optional<std::array<uint32_t, 2>> meeting_triangles(const TriangleTree& tree) {
+std::optional<std::array<uint32_t, 2>> meeting_triangles(const TriangleTree& tree, Pulse& pulse) {
   const std::vector<TriangleTree::Node>& nodes = tree.nodes();
   const LeafSearch search(tree);
   std::mutex mutex;
@@ -239,6 +239,8 @@ std::optional<std::array<uint32_t, 2>> meeting_triangles(const TriangleTree& tre
   };
   tbb::this_task_arena::isolate([&] {
     tbb::parallel_for(size_t(0), nodes.size(), [&](size_t i) {
+      // Each may take many steps.
+      pulse(double(i) / double(nodes.size()));
       for (size_t child = 0; child < 4; ++child) search_leaf(nodes[i], child);
     });
   });

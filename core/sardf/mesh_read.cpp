@@ -30,7 +30,7 @@ bool parse_whole(std::string_view word, Number& number) {
   return problem == std::errc() && end == word.data() + word.size() && !word.empty();
 }
 
-MeshBytes contents(const std::string& path) {
+MeshBytes contents(const std::string& path, Pulse& pulse) {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   // A folder opens, but cannot be read.
@@ -40,18 +40,30 @@ MeshBytes contents(const std::string& path) {
     throw Error("cannot read the mesh: " + reason, path);
   }
   file.clear();
-  std::stringstream bytes;
-  bytes << file.rdbuf();
-  return {path, std::move(bytes).str()};
+  constexpr size_t chunk = 1 << 20;
+  std::error_code unknown;
+  const uintmax_t size = std::filesystem::file_size(path, unknown);
+  std::string bytes;
+  if (!unknown) bytes.reserve(size + chunk);
+  while (file) {
+    const size_t before = bytes.size();
+    bytes.resize(before + chunk);
+    file.read(&bytes[before], chunk);
+    bytes.resize(before + size_t(file.gcount()));
+    pulse(unknown || size == 0 ? 0 : double(bytes.size()) / double(size));
+  }
+  return {path, std::move(bytes), pulse};
 }
 
-PolygonMesh read_polygons(const std::string& path) {
+using Reader = PolygonMesh (*)(const MeshBytes& file);
+
+Reader reader_for(const std::string& path) {
   std::string ending = std::filesystem::path(path).extension();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
-  if (ending == ".ply") return read_ply(contents(path));
-  if (ending == ".obj") return read_obj(contents(path));
-  if (ending == ".stl") return read_stl(contents(path));
+  if (ending == ".ply") return read_ply;
+  if (ending == ".obj") return read_obj;
+  if (ending == ".stl") return read_stl;
   throw Error("the mesh's name ends in '" + ending + "'; .ply, .obj and .stl are accepted" +
                   did_you_mean(ending, {".ply", ".obj", ".stl"}),
               path);
@@ -88,20 +100,26 @@ class Positions {
   std::vector<uint32_t> slots_;
 };
 
-TriangleMesh to_triangles(const PolygonMesh& from) {
+TriangleMesh to_triangles(const PolygonMesh& from, Pulse& pulse) {
   TriangleMesh mesh;
   mesh.polygon_count = from.polygon_count();
   Positions positions(from.vertices().size());
   std::vector<uint32_t> number;
   number.reserve(from.vertices().size());
-  for (const Vec3& at : from.vertices()) number.push_back(positions.number_of(mesh.vertices, at));
+  pulse.stage(0.8);
+  for (const Vec3& at : from.vertices()) {
+    number.push_back(positions.number_of(mesh.vertices, at));
+    pulse.step(number.size(), from.vertices().size());
+  }
 
   std::vector<Vec3> corners;
+  pulse.stage(1);
   for (size_t i = 0; i < from.polygon_count(); ++i) {
+    pulse.step(i, from.polygon_count());
     const std::vector<uint32_t> polygon = from.polygon(i);
     corners.clear();
     for (const uint32_t corner : polygon) corners.push_back(from.vertices()[corner]);
-    for (const auto& [a, b, c] : triangulated(corners)) {
+    for (const auto& [a, b, c] : triangulated(corners, pulse)) {
       mesh.triangles.push_back({number[polygon[a]], number[polygon[b]], number[polygon[c]]});
       mesh.polygons.push_back(uint32_t(i));
     }
@@ -112,8 +130,8 @@ TriangleMesh to_triangles(const PolygonMesh& from) {
 }  // namespace
 
 void PolygonMesh::fail(const std::string& message, uint64_t place) const {
-  if (in_lines_) throw Error(message, path_, int(std::min<uint64_t>(place, 2147483647)));
-  throw Error("byte " + std::to_string(place) + ": " + message, path_);
+  if (in_lines_) throw Error(message, file_.path, int(std::min<uint64_t>(place, 2147483647)));
+  throw Error("byte " + std::to_string(place) + ": " + message, file_.path);
 }
 
 void PolygonMesh::add_vertex(const Vec3& at, uint64_t place) {
@@ -142,6 +160,7 @@ void PolygonMesh::end_polygon(uint64_t place) {
 void PolygonMesh::check() const {
   size_t corner = 0;
   for (size_t i = 0; i < ends_.size(); ++i) {
+    file_.pulse.step(i, ends_.size());
     for (; corner < ends_[i]; ++corner) {
       if (corners_[corner] >= 0 && uint64_t(corners_[corner]) < vertices_.size()) continue;
       fail("face " + std::to_string(i) + ", counted from 0, has vertex " +
@@ -150,9 +169,9 @@ void PolygonMesh::check() const {
            places_[i]);
     }
   }
-  if (ends_.empty()) throw Error("the mesh has no triangles", path_);
+  if (ends_.empty()) throw Error("the mesh has no triangles", file_.path);
   if (vertices_.size() >= (1ull << 31) || corners_.size() >= (1ull << 31)) {
-    throw Error("the mesh has more than 2^31 vertices or corners", path_);
+    throw Error("the mesh has more than 2^31 vertices or corners", file_.path);
   }
 }
 
@@ -206,10 +225,15 @@ std::string_view MeshWords::rest_of_line() {
 bool parse_number(std::string_view word, double& number) { return parse_whole(word, number); }
 bool parse_number(std::string_view word, int64_t& number) { return parse_whole(word, number); }
 
-TriangleMesh read_triangle_mesh(const std::string& path) {
-  const PolygonMesh polygons = read_polygons(path);
+TriangleMesh read_triangle_mesh(const std::string& path, const Progress& progress) {
+  Pulse pulse(progress);
+  const Reader read = reader_for(path);
+  pulse.stage(0.2);
+  const MeshBytes file = contents(path, pulse);
+  pulse.stage(0.7);
+  const PolygonMesh polygons = read(file);
   polygons.check();
-  return to_triangles(polygons);
+  return to_triangles(polygons, pulse);
 }
 
 }  // namespace sardf

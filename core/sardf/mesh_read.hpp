@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sardf/progress.hpp"
 #include "sardf/vec.hpp"
 
 namespace sardf {
@@ -25,6 +26,6 @@ struct TriangleMesh {
 /// Throws Error that names the file and the line (in binary files, the byte) of what is wrong: a
 /// file that cannot be read or ends too early, an unknown ending, a corner that is no vertex, a
 /// coordinate that is not finite or beyond 1e100, a mesh without triangles.
-TriangleMesh read_triangle_mesh(const std::string& path);
+TriangleMesh read_triangle_mesh(const std::string& path, const Progress& progress = {});
 
 }  // namespace sardf

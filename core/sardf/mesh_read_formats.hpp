@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sardf/error.hpp"
+#include "sardf/pulse.hpp"
 #include "sardf/vec.hpp"
 
 namespace sardf {
@@ -15,13 +16,19 @@ namespace sardf {
 struct MeshBytes {
   std::string path;
   std::string bytes;
+  Pulse& pulse;
 };
 
 /// Polygons as a file has them.
 class PolygonMesh {
  public:
-  /// `path`: of the file; `in_lines`: whether places are lines (from 1), else bytes (from 0).
-  PolygonMesh(std::string path, bool in_lines) : path_(std::move(path)), in_lines_(in_lines) {}
+  /// `in_lines`: whether places are lines (from 1), else bytes (from 0). Keeps a reference.
+  PolygonMesh(const MeshBytes& file, bool in_lines) : file_(file), in_lines_(in_lines) {}
+
+  /// Says that the reader works, and is at this byte: called for every few words.
+  void step(size_t position) {
+    if (++steps_ % 64 == 0) file_.pulse(double(position) / double(file_.bytes.size()));
+  }
 
   /// Throws Error when a coordinate is not finite or beyond 1e100.
   void add_vertex(const Vec3& at, uint64_t place);
@@ -37,8 +44,9 @@ class PolygonMesh {
   std::vector<uint32_t> polygon(size_t i) const;
 
  private:
-  std::string path_;
+  const MeshBytes& file_;
   bool in_lines_;
+  size_t steps_ = 0;
   std::vector<Vec3> vertices_;
   std::vector<int64_t> corners_;
   std::vector<size_t> ends_;

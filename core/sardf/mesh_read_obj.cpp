@@ -7,10 +7,11 @@ namespace {
 
 class ObjReader {
  public:
-  explicit ObjReader(const MeshBytes& file) : words_(file.bytes), mesh_(file.path, true) {}
+  explicit ObjReader(const MeshBytes& file) : words_(file.bytes), mesh_(file, true) {}
 
   PolygonMesh read() {
     do {
+      mesh_.step(words_.position());
       const std::string_view keyword = words_.word();
       if (keyword == "v") vertex();
       if (keyword == "f") face();
@@ -43,6 +44,7 @@ class ObjReader {
   void face() {
     const uint64_t line = words_.line();
     for (std::string_view corner = word(); !corner.empty(); corner = word()) {
+      mesh_.step(words_.position());
       int64_t index = 0;
       if (!parse_number(corner.substr(0, corner.find('/')), index) || index == 0) {
         mesh_.fail("found '" + std::string(corner) +

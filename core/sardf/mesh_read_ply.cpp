@@ -149,7 +149,9 @@ class Numbers {
     words_.skip_to_word();
     return words_.line();
   }
-  size_t left() const { return bytes_.size() - (in_lines() ? words_.position() : at_); }
+  /// Bytes of the file that are read.
+  size_t position() const { return start_ + (in_lines() ? words_.position() : at_); }
+  size_t left() const { return start_ + bytes_.size() - position(); }
 
   /// The next number; nullopt at the end of the file or where there is none.
   std::optional<double> next(const Type& type) {
@@ -189,7 +191,7 @@ class Numbers {
 class BodyReader {
  public:
   BodyReader(const MeshBytes& file, const Header& header)
-      : numbers_(file, header), mesh_(file.path, numbers_.in_lines()), path_(file.path) {}
+      : numbers_(file, header), mesh_(file, numbers_.in_lines()), path_(file.path) {}
 
   PolygonMesh read(const Header& header) {
     for (const Element& element : header.elements) {
@@ -219,6 +221,7 @@ class BodyReader {
   double number(const Type& type, const Element& element, uint64_t index) {
     const uint64_t place = numbers_.place();
     const std::optional<double> found = numbers_.next(type);
+    mesh_.step(numbers_.position());
     if (!found) {
       mesh_.fail("found the end of the file, or what is no number, in element " +
                      std::to_string(index) + ", counted from 0, of the " +

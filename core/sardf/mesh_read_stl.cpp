@@ -17,10 +17,11 @@ uint32_t word_at(const std::string& bytes, size_t at) {
 }
 
 PolygonMesh read_binary(const MeshBytes& file) {
-  PolygonMesh mesh(file.path, false);
+  PolygonMesh mesh(file, false);
   const size_t facets = word_at(file.bytes, header_size - 4);
   for (size_t i = 0; i < facets; ++i) {
     const size_t facet = header_size + i * facet_size;
+    mesh.step(facet);
     for (size_t corner = 0; corner < 3; ++corner) {
       const size_t at = facet + 12 * (corner + 1);
       Vec3 position{};
@@ -37,11 +38,12 @@ PolygonMesh read_binary(const MeshBytes& file) {
 
 class TextReader {
  public:
-  explicit TextReader(const MeshBytes& file) : words_(file.bytes), mesh_(file.path, true) {}
+  explicit TextReader(const MeshBytes& file) : words_(file.bytes), mesh_(file, true) {}
 
   PolygonMesh read() {
     bool ended = false;
     for (std::string_view word; !(word = words_.word_of_any_line()).empty();) {
+      mesh_.step(words_.position());
       ended = word == "endsolid";
       if (word == "solid" || ended) {
         words_.next_line();  // the rest is a name
@@ -83,6 +85,7 @@ class TextReader {
     expect("loop");
     for (std::string_view word; (word = words_.word_of_any_line()) != "endloop";) {
       if (word != "vertex") unexpected(word, "vertex or endloop");
+      mesh_.step(words_.position());
       const uint64_t at = words_.line();
       const double x = number(), y = number(), z = number();
       mesh_.add_corner(int64_t(mesh_.vertices().size()));

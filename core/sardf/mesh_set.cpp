@@ -20,20 +20,42 @@ constexpr double no_direction = 1e-13;
 
 double length_of(const Vec3& a) { return std::sqrt(dot(a, a)); }
 
-bool encloses_negative_volume(const TriangleTree& tree) {
+bool encloses_negative_volume(const TriangleTree& tree, Pulse& pulse) {
   double volume = 0;
   for (const TriangleTree::Triangle& t : tree.triangles()) {
+    pulse.step(size_t(&t - tree.triangles().data()), tree.triangles().size());
     volume += dot(tree.corner(t, 0), tree.area_vector(t));
   }
   return volume < 0;
 }
 
-std::vector<double> mesh_identity(const TriangleMesh& mesh) {
+// Appends the fingerprints of parts of a list.
+template <class Rows>
+void add_fingerprints(std::vector<double>& to, const Rows& rows, Pulse& pulse) {
+  constexpr size_t part = 1 << 14;
   std::vector<double> all;
-  all.reserve(3 * (mesh.vertices.size() + mesh.triangles.size()));
-  for (const Vec3& v : mesh.vertices) all.insert(all.end(), v.begin(), v.end());
-  for (const auto& t : mesh.triangles) all.insert(all.end(), t.begin(), t.end());
-  return fingerprint(all);
+  to.push_back(double(rows.size()));
+  for (size_t first = 0; first < rows.size(); first += part) {
+    pulse(double(first) / double(rows.size()));
+    all.clear();
+    for (size_t i = first; i < std::min(rows.size(), first + part); ++i) {
+      all.insert(all.end(), rows[i].begin(), rows[i].end());
+    }
+    const std::vector<double> found = fingerprint(all);
+    to.insert(to.end(), found.begin(), found.end());
+  }
+}
+
+std::vector<double> mesh_identity(const TriangleMesh& mesh, Pulse& pulse) {
+  std::vector<double> parts;
+  add_fingerprints(parts, mesh.vertices, pulse);
+  add_fingerprints(parts, mesh.triangles, pulse);
+  return fingerprint(parts);
+}
+
+Pulse& staged(Pulse& pulse, double end) {
+  pulse.stage(end);
+  return pulse;
 }
 
 /// What solids and surfaces have in common.
@@ -184,8 +206,9 @@ class SolidPoints : public MeshPoints {
 
 class NormalSolid final : public SolidPoints {
  public:
-  NormalSolid(MeshDataPointer from, const std::vector<double>& identity)
-      : SolidPoints(std::move(from), identity), corner_normals_(vertex_pseudonormals(tree())) {}
+  NormalSolid(MeshDataPointer from, const std::vector<double>& identity, Pulse& pulse)
+      : SolidPoints(std::move(from), identity),
+        corner_normals_(vertex_pseudonormals(tree(), pulse)) {}
 
  private:
   Vec3 outward(const TrianglePoint& at) const override {
@@ -234,31 +257,40 @@ class WindingSolid final : public SolidPoints {
 
 }  // namespace
 
-MeshSolidity::MeshSolidity(const TriangleTree& tree)
-    : topology(tree),
-      turned(topology.is_closed() && encloses_negative_volume(tree)),
-      winding(tree, turned),
-      fault(topology.fault()) {
+MeshSolidity::MeshSolidity(const TriangleTree& tree, Pulse& pulse)
+    : topology(tree, staged(pulse, 0.2)),
+      turned(topology.is_closed() && encloses_negative_volume(tree, pulse)),
+      winding(tree, turned, staged(pulse, 0.3)),
+      fault(topology.fault(staged(pulse, 0.4))) {
   if (fault) return;
-  if (const auto meeting = meeting_triangles(tree)) {
+  if (const auto meeting = meeting_triangles(tree, staged(pulse, 0.9))) {
     fault = {"meets another face beside common corners and edges", (*meeting)[0]};
     return;
   }
   // On one side of each part there must be nothing, and on the other one layer of solid.
-  for (const uint32_t triangle : topology.parts()) {
+  const std::vector<uint32_t> parts = topology.parts(staged(pulse, 0.95));
+  pulse.stage(1);
+  for (const uint32_t triangle : parts) {
+    pulse(double(&triangle - parts.data()) / double(parts.size()));
     if (std::abs(winding.on_triangle(triangle) - 0.5) < 0.25) continue;
     fault = {"is part of a surface that is inside out, or lies within another", triangle};
     return;
   }
 }
 
-MeshData::MeshData(TriangleMesh mesh)
-    : mesh_(std::move(mesh)),
-      tree_(mesh_.vertices, mesh_.triangles),
-      identity_(mesh_identity(mesh_)) {}
+MeshData::MeshData(TriangleMesh mesh, const Progress& progress)
+    : MeshData(std::move(mesh), Pulse(progress)) {}
 
-const MeshSolidity& MeshData::solidity() const {
-  std::call_once(once_, [this] { solidity_ = std::make_unique<MeshSolidity>(tree_); });
+MeshData::MeshData(TriangleMesh mesh, Pulse&& pulse)
+    : mesh_(std::move(mesh)),
+      tree_(mesh_.vertices, mesh_.triangles, pulse),
+      identity_(mesh_identity(mesh_, pulse)) {}
+
+const MeshSolidity& MeshData::solidity(const Progress& progress) const {
+  std::call_once(once_, [&] {
+    Pulse pulse(progress);
+    solidity_ = std::make_unique<MeshSolidity>(tree_, pulse);
+  });
   return *solidity_;
 }
 
@@ -266,7 +298,7 @@ uint32_t MeshData::polygon(uint32_t tree_triangle) const {
   return mesh_.polygons[tree_.triangles()[tree_triangle].given()];
 }
 
-MeshDataPointer mesh_data(const std::string& path) {
+MeshDataPointer mesh_data(const std::string& path, const Progress& progress) {
   namespace fs = std::filesystem;
   struct Known {
     uintmax_t size = 0;
@@ -288,19 +320,21 @@ MeshDataPointer mesh_data(const std::string& path) {
     }
   }
   // Read without the lock: another thread may want another file.
-  auto data = std::make_shared<const MeshData>(read_triangle_mesh(path));
+  TriangleMesh mesh = read_triangle_mesh(path, part_of(progress, 0, 0.6));
+  auto data = std::make_shared<const MeshData>(std::move(mesh), part_of(progress, 0.6, 1));
   const std::lock_guard lock(mutex);
   std::erase_if(all, [](const auto& entry) { return entry.second.data.expired(); });
   all[place] = {size, time, data};
   return data;
 }
 
-MeshSolidSet solid_of_mesh(const MeshDataPointer& data, const std::string& sign) {
+MeshSolidSet solid_of_mesh(const MeshDataPointer& data, const std::string& sign,
+                           const Progress& progress) {
   if (sign != "auto" && sign != "normals" && sign != "winding") {
     throw Error("sign is '" + sign + "'; 'auto', 'normals' and 'winding' are accepted" +
                 did_you_mean(sign, {"auto", "normals", "winding"}));
   }
-  const MeshSolidity& solidity = data->solidity();
+  const MeshSolidity& solidity = data->solidity(part_of(progress, 0, 0.9));
   const std::optional<MeshTopology::Fault>& fault = solidity.fault;
   if (sign == "normals" && fault) {
     throw Error(
@@ -315,11 +349,17 @@ MeshSolidSet solid_of_mesh(const MeshDataPointer& data, const std::string& sign)
   const Exactness how = !fault                          ? Exactness::exact
                         : solidity.topology.is_closed() ? Exactness::bound
                                                         : Exactness::estimate;
-  if (by_normals) return {std::make_shared<NormalSolid>(data, identity), {how, how}};
+  if (by_normals) {
+    const Progress rest = part_of(progress, 0.9, 1);
+    Pulse pulse(rest);
+    pulse.stage(1);
+    return {std::make_shared<NormalSolid>(data, identity, pulse), {how, how}};
+  }
   return {std::make_shared<WindingSolid>(data, identity), {how, how}};
 }
 
-PointSetPointer surface_of_mesh(const MeshDataPointer& data, const std::vector<double>& faces) {
+PointSetPointer surface_of_mesh(const MeshDataPointer& data, const std::vector<double>& faces,
+                                const Progress& progress) {
   if (faces.empty()) return std::make_shared<SurfacePoints>(data, data->identity());
   const TriangleMesh& all = data->mesh();
   std::vector<bool> wanted(all.polygon_count);
@@ -339,7 +379,7 @@ PointSetPointer surface_of_mesh(const MeshDataPointer& data, const std::vector<d
     part.triangles.push_back(all.triangles[i]);
     part.polygons.push_back(all.polygons[i]);
   }
-  const auto made = std::make_shared<const MeshData>(std::move(part));
+  const auto made = std::make_shared<const MeshData>(std::move(part), progress);
   return std::make_shared<SurfacePoints>(made, made->identity());
 }
 

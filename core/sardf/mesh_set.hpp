@@ -17,7 +17,8 @@ namespace sardf {
 
 /// What is known of a mesh as the boundary of a solid.
 struct MeshSolidity {
-  explicit MeshSolidity(const TriangleTree& tree);
+  /// Throws Cancelled where the pulse does.
+  explicit MeshSolidity(const TriangleTree& tree, Pulse& pulse = Pulse::none());
 
   MeshTopology topology;
   /// Whether it is closed and encloses a negative volume: then its triangles are turned over.
@@ -33,18 +34,20 @@ struct MeshSolidity {
 class MeshData {
  public:
   /// At least one triangle.
-  explicit MeshData(TriangleMesh mesh);
+  explicit MeshData(TriangleMesh mesh, const Progress& progress = {});
 
   const TriangleMesh& mesh() const { return mesh_; }
   const TriangleTree& tree() const { return tree_; }
   /// Equal for equal meshes.
   const std::vector<double>& identity() const { return identity_; }
-  /// Made when it is first asked for.
-  const MeshSolidity& solidity() const;
+  /// Made when it is first asked for, and again if that was cancelled.
+  const MeshSolidity& solidity(const Progress& progress = {}) const;
   /// The triangle's polygon in the file, for messages.
   uint32_t polygon(uint32_t tree_triangle) const;
 
  private:
+  MeshData(TriangleMesh mesh, Pulse&& pulse);
+
   TriangleMesh mesh_;
   TriangleTree tree_;
   std::vector<double> identity_;
@@ -56,7 +59,7 @@ using MeshDataPointer = std::shared_ptr<const MeshData>;
 
 /// Reads the file, unless a field still holds what was read of it at the same size and time of
 /// modification. Throws Error as read_triangle_mesh does.
-MeshDataPointer mesh_data(const std::string& path);
+MeshDataPointer mesh_data(const std::string& path, const Progress& progress = {});
 
 struct MeshSolidSet {
   PointSetPointer set;
@@ -73,10 +76,12 @@ struct MeshSolidSet {
 /// triangles only, but some triangles may lie inside the solid, or outside, so the distance is a
 /// bound. For open meshes the sign also changes across the holes, where the distance is not 0: the
 /// field is an estimate, it jumps there, and its slope is infinite near there.
-MeshSolidSet solid_of_mesh(const MeshDataPointer& data, const std::string& sign);
+MeshSolidSet solid_of_mesh(const MeshDataPointer& data, const std::string& sign,
+                           const Progress& progress = {});
 
 /// All triangles, or those of the polygons (counted from 0 as in the file) in `faces`. Throws Error
 /// when there is no such polygon.
-PointSetPointer surface_of_mesh(const MeshDataPointer& data, const std::vector<double>& faces);
+PointSetPointer surface_of_mesh(const MeshDataPointer& data, const std::vector<double>& faces,
+                                const Progress& progress = {});
 
 }  // namespace sardf

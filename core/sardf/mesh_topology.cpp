@@ -19,12 +19,19 @@ struct VertexLists {
 
   /// `vertex_of`: a half-edge's vertex.
   template <class VertexOf>
-  VertexLists(size_t vertices, size_t count, const VertexOf& vertex_of) : first(vertices + 1) {
-    for (uint32_t h = 0; h < count; ++h) ++first[vertex_of(h) + 1];
+  VertexLists(size_t vertices, size_t count, Pulse& pulse, const VertexOf& vertex_of)
+      : first(vertices + 1) {
+    for (uint32_t h = 0; h < count; ++h) {
+      pulse.step(h, 2 * count);
+      ++first[vertex_of(h) + 1];
+    }
     for (size_t v = 0; v < vertices; ++v) first[v + 1] += first[v];
     std::vector<size_t> at(first.begin(), first.end() - 1);
     half_edges.resize(count);
-    for (uint32_t h = 0; h < count; ++h) half_edges[at[vertex_of(h)]++] = h;
+    for (uint32_t h = 0; h < count; ++h) {
+      pulse.step(count + h, 2 * count);
+      half_edges[at[vertex_of(h)]++] = h;
+    }
   }
   std::span<uint32_t> of(size_t v) { return {&half_edges[0] + first[v], first[v + 1] - first[v]}; }
 };
@@ -32,9 +39,10 @@ struct VertexLists {
 constexpr size_t grain = 4096;
 
 template <class Body>
-void for_all(size_t n, const Body& body) {
+void for_all(size_t n, Pulse& pulse, const Body& body) {
   tbb::this_task_arena::isolate([&] {
     tbb::parallel_for(size_t(0), (n + grain - 1) / grain, [&](size_t part) {
+      pulse(double(part * grain) / double(n));
       for (size_t i = part * grain; i < std::min(n, (part + 1) * grain); ++i) body(i);
     });
   });
@@ -44,12 +52,12 @@ void for_all(size_t n, const Body& body) {
 
 uint32_t MeshTopology::start(uint32_t h) const { return tree_.triangles()[h / 3].corners[h % 3]; }
 
-MeshTopology::MeshTopology(const TriangleTree& tree)
+MeshTopology::MeshTopology(const TriangleTree& tree, Pulse& pulse)
     : tree_(tree), twins_(3 * tree.triangles().size(), none) {
   const auto smaller_end = [&](uint32_t h) { return std::min(start(h), start(next_half_edge(h))); };
-  VertexLists lists(tree.vertices().size(), twins_.size(), smaller_end);
+  VertexLists lists(tree.vertices().size(), twins_.size(), pulse, smaller_end);
   std::atomic<bool> open{false};
-  for_all(tree.vertices().size(), [&](size_t v) {
+  for_all(tree.vertices().size(), pulse, [&](size_t v) {
     const std::span<uint32_t> all = lists.of(v);
     const auto other_end = [&](uint32_t h) { return start(h) ^ start(next_half_edge(h)); };
     std::sort(all.begin(), all.end(), [&](uint32_t g, uint32_t h) {
@@ -90,11 +98,12 @@ std::string MeshTopology::edge_fault(uint32_t half_edge) const {
          std::to_string(back) + " back";
 }
 
-std::optional<MeshTopology::Fault> MeshTopology::fault() const {
+std::optional<MeshTopology::Fault> MeshTopology::fault(Pulse& pulse) const {
   const std::vector<TriangleTree::Triangle>& triangles = tree_.triangles();
   std::vector<uint8_t> several_fans(tree_.vertices().size());
-  VertexLists around(several_fans.size(), twins_.size(), [&](uint32_t h) { return start(h); });
-  for_all(several_fans.size(), [&](size_t v) {
+  VertexLists around(several_fans.size(), twins_.size(), pulse,
+                     [&](uint32_t h) { return start(h); });
+  for_all(several_fans.size(), pulse, [&](size_t v) {
     const std::span<const uint32_t> all = around.of(v);
     uint32_t h = all[0];
     size_t walked = 0;
@@ -111,6 +120,7 @@ std::optional<MeshTopology::Fault> MeshTopology::fault() const {
   };
   uint32_t worst = none;
   for (uint32_t h = 0; h < twins_.size(); ++h) {
+    pulse.step(h, twins_.size());
     const uint32_t t = h / 3;
     const bool bad = twins_[h] == none || several_fans[start(h)] || !tree_.has_area(triangles[t]);
     if (bad && (worst == none || rank(t) < rank(worst / 3))) worst = h;
@@ -127,10 +137,12 @@ std::optional<MeshTopology::Fault> MeshTopology::fault() const {
                triangle};
 }
 
-std::vector<uint32_t> MeshTopology::parts() const {
+std::vector<uint32_t> MeshTopology::parts(Pulse& pulse) const {
   std::vector<uint32_t> found, queue;
   std::vector<bool> seen(tree_.triangles().size());
+  size_t done = 0;
   for (uint32_t first = 0; first < seen.size(); ++first) {
+    pulse.step(first, seen.size());
     if (seen[first]) continue;
     found.push_back(first);
     seen[first] = true;
@@ -138,6 +150,7 @@ std::vector<uint32_t> MeshTopology::parts() const {
     while (!queue.empty()) {
       const uint32_t t = queue.back();
       queue.pop_back();
+      pulse.step(++done, seen.size());
       for (uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
         if (twins_[h] == none || seen[twins_[h] / 3]) continue;
         seen[twins_[h] / 3] = true;
@@ -148,12 +161,12 @@ std::vector<uint32_t> MeshTopology::parts() const {
   return found;
 }
 
-std::vector<Vec3> vertex_pseudonormals(const TriangleTree& tree) {
+std::vector<Vec3> vertex_pseudonormals(const TriangleTree& tree, Pulse& pulse) {
   const std::vector<TriangleTree::Triangle>& triangles = tree.triangles();
   const auto start = [&](uint32_t h) { return triangles[h / 3].corners[h % 3]; };
-  VertexLists around(tree.vertices().size(), 3 * triangles.size(), start);
+  VertexLists around(tree.vertices().size(), 3 * triangles.size(), pulse, start);
   std::vector<Vec3> normals(tree.vertices().size());
-  for_all(normals.size(), [&](size_t v) {
+  for_all(normals.size(), pulse, [&](size_t v) {
     for (const uint32_t h : around.of(v)) {
       const TriangleTree::Triangle& t = triangles[h / 3];
       const Vec3 &at = tree.corner(t, h % 3), to_next = tree.corner(t, (h + 1) % 3) - at,

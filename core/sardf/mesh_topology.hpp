@@ -14,7 +14,8 @@ class MeshTopology {
  public:
   static constexpr uint32_t none = ~0u;
 
-  explicit MeshTopology(const TriangleTree& tree);
+  /// Throws Cancelled where the pulse does, as `fault` and `parts` do.
+  explicit MeshTopology(const TriangleTree& tree, Pulse& pulse = Pulse::none());
 
   /// The half-edge that runs back along this one where these two are the edge's only ones, else
   /// `none`.
@@ -30,10 +31,10 @@ class MeshTopology {
   /// What keeps the mesh from being an oriented closed surface without singular points: an edge
   /// without exactly two triangles that run along it in opposite directions, a corner where several
   /// fans of triangles meet, a triangle without area. The first one as given.
-  std::optional<Fault> fault() const;
+  std::optional<Fault> fault(Pulse& pulse = Pulse::none()) const;
 
   /// One triangle of each part that hangs together over edges, in the tree's order.
-  std::vector<uint32_t> parts() const;
+  std::vector<uint32_t> parts(Pulse& pulse = Pulse::none()) const;
 
  private:
   uint32_t start(uint32_t half_edge) const;
@@ -50,6 +51,6 @@ inline uint32_t next_half_edge(uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; 
 /// Of each vertex, the sum of the outward unit normals of its triangles, weighted by their angles
 /// there. Source: Bærentzen and Aanæs 2005, "Signed distance computation using the angle weighted
 /// pseudonormal".
-std::vector<Vec3> vertex_pseudonormals(const TriangleTree& tree);
+std::vector<Vec3> vertex_pseudonormals(const TriangleTree& tree, Pulse& pulse = Pulse::none());
 
 }  // namespace sardf

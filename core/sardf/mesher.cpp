@@ -149,7 +149,7 @@ void fill_normals(Mesh& mesh) {
 Mesh make_mesh(const Evaluator& solid, const BoundingBox& bounds, const MeshOptions& options) {
   using namespace mesher;
   const Grid grid = make_grid(bounds, options);
-  const Field field(solid, bounds);
+  Field field(solid, bounds);
   Work work(options.progress);
   const size_t limit = options.memory_limit ? options.memory_limit : free_memory();
   work.stage(0.4);

@@ -5,9 +5,23 @@
 
 namespace sardf::mesher {
 
-/// The blocks of the grid that can hold surface. Throws Error when the mesh would not fit into
-/// `memory_limit` bytes.
-std::vector<Index3> find_blocks(const Field& field, const Grid& grid, size_t memory_limit,
-                                Work& work);
+/// The blocks of the grid that can hold surface; the field gets shorter programs for them. Throws
+/// Error when the mesh would not fit into `memory_limit` bytes.
+std::vector<Index3> find_blocks(Field& field, const Grid& grid, size_t memory_limit, Work& work);
+
+/// The level of blocks in the octree of programs.
+inline constexpr int block_level = 2;
+static_assert(Programs::least_cells << block_level == block_cells);
+
+struct NodeProgram {
+  Index3 node;
+  int level;
+  ProgramPointer program;
+};
+
+/// Shorter programs for the parts of a block that hold surface, appended, where the block's own is
+/// long. `occupied`: bit x + 8 y of entry z: a cell with surface.
+void shorten_parts(const Field& field, const Index3& block,
+                   const std::array<uint64_t, block_cells>& occupied, std::vector<NodeProgram>& to);
 
 }  // namespace sardf::mesher

@@ -12,11 +12,6 @@ constexpr int samples = side * side * side;
 
 constexpr int sample_index(int x, int y, int z) { return x + side * (y + side * z); }
 
-uint64_t key(const Index3& block) {
-  return uint64_t(uint32_t(block[0])) | uint64_t(uint32_t(block[1])) << 21 |
-         uint64_t(uint32_t(block[2])) << 42;
-}
-
 struct Sampled {
   Index3 block{};
   Cells::Block occupied;
@@ -24,6 +19,7 @@ struct Sampled {
   std::vector<uint8_t> inside, joined;
   std::vector<Crossing> crossings;
   std::vector<Index3> neighbours;  // blocks that share a crossed edge
+  std::vector<NodeProgram> programs;
 };
 
 template <class T>
@@ -129,6 +125,7 @@ Sampled sample(const Field& field, const Grid& grid, const Index3& block) {
   std::sort(result.neighbours.begin(), result.neighbours.end());
   result.neighbours.erase(std::unique(result.neighbours.begin(), result.neighbours.end()),
                           result.neighbours.end());
+  shorten_parts(field, block, result.occupied.occupied, result.programs);
   return result;
 }
 
@@ -164,7 +161,7 @@ uint32_t Cells::find(const Index3& cell) const {
   return block.first[layer] + uint32_t(__builtin_popcountll(before));
 }
 
-Cells find_cells(const Field& field, const Grid& grid, size_t memory_limit, Work& work) {
+Cells find_cells(Field& field, const Grid& grid, size_t memory_limit, Work& work) {
   std::vector<Index3> blocks = find_blocks(field, grid, memory_limit, work);
   std::unordered_map<uint64_t, bool> known;
   for (const Index3& block : blocks) known[key(block)] = true;
@@ -183,6 +180,9 @@ Cells find_cells(const Field& field, const Grid& grid, size_t memory_limit, Work
                              next[0] < grid.blocks[0] && next[1] < grid.blocks[1] &&
                              next[2] < grid.blocks[2];
         if (in_grid && known.emplace(key(next), true).second) missing.push_back(next);
+      }
+      for (NodeProgram& n : part.programs) {
+        field.programs()->add(n.node, n.level, std::move(n.program));
       }
       append(part, cells);
     }

@@ -1,5 +1,7 @@
 #include "sardf/mesher_field.hpp"
 
+#include <algorithm>
+#include <functional>
 #include <limits>
 
 namespace sardf::mesher {
@@ -26,12 +28,76 @@ T clip_value(const BoundingBox& bounds, const Points<T>& points, size_t i, int& 
   return nearest;
 }
 
+bool contains(const BoundingBox& box, const Vec3& p) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(box.lo[axis] <= p[axis] && p[axis] <= box.hi[axis])) return false;
+  }
+  return true;
+}
+
+template <class T>
+void copy_point(const Points<T>& from, size_t i, Points<T>& to, size_t k) {
+  for (int axis = 0; axis < 3; ++axis) {
+    to.xyz[axis][k] = from.xyz[axis][i];
+    to.gradient[axis][k] = from.gradient[axis][i];
+  }
+  to.value[k] = from.value[i];
+}
+
 }  // namespace
+
+const Evaluator& Field::program(const Index3& node, int level) const {
+  if (!programs_) return solid_;
+  const Programs::Found found = programs_->find(node, level);
+  return found.program ? **found.program : solid_;
+}
+
+template <class T>
+bool Field::find_programs(const Points<T>& points, size_t n, const Evaluator** found) const {
+  bool is_one = true;
+  Programs::Found last;
+  for (size_t i = 0; i < n; ++i) {
+    const Vec3 at{double(points.xyz[0][i]), double(points.xyz[1][i]), double(points.xyz[2][i])};
+    // Points beside one another mostly lie in one node.
+    if (!last.program || !contains(last.valid, at)) {
+      last = programs_->find(at);
+      if (last.program && !contains(last.valid, at)) last.program = nullptr;
+    }
+    found[i] = last.program ? last.program->get() : &solid_;
+    is_one = is_one && found[i] == found[0];
+  }
+  return is_one;
+}
+
+template <class T, class Run>
+void Field::for_programs(Points<T>& points, size_t n, Run run) const {
+  const Evaluator* found[Points<T>::capacity];
+  if (!programs_ || n == 0) return run(solid_, points, n);
+  if (find_programs(points, n, found)) return run(*found[0], points, n);
+  // Where one lies in the order does not matter to the result.
+  uint16_t order[Points<T>::capacity];
+  for (size_t i = 0; i < n; ++i) order[i] = uint16_t(i);
+  std::sort(order, order + n, [&](uint16_t a, uint16_t b) {
+    return std::less<>()(found[a], found[b]) || (found[a] == found[b] && a < b);
+  });
+  Points<T> group;
+  for (size_t first = 0, last; first < n; first = last) {
+    const Evaluator* program = found[order[first]];
+    for (last = first; last < n && found[order[last]] == program; ++last) {
+      copy_point(points, order[last], group, last - first);
+    }
+    run(*program, group, last - first);
+    for (size_t i = first; i < last; ++i) copy_point(group, i - first, points, order[i]);
+  }
+}
 
 template <class T>
 void Field::evaluate(Points<T>& points, size_t n) const {
+  for_programs(points, n, [](const Evaluator& solid, Points<T>& at, size_t count) {
+    T* to = at.value;
+    solid.block(at.xyz[0], at.xyz[1], at.xyz[2], count, &to);
+  });
   T* out = points.value;
-  solid_.block(points.xyz[0], points.xyz[1], points.xyz[2], n, &out);
   for (size_t i = 0; i < n; ++i) {
     int face;
     const T clip = clip_value(bounds_, points, i, face);
@@ -41,15 +107,17 @@ void Field::evaluate(Points<T>& points, size_t n) const {
 
 template <class T>
 void Field::differentiate(Points<T>& points, size_t n) const {
-  T* gradient[3] = {points.gradient[0], points.gradient[1], points.gradient[2]};
-  solid_.gradient_block(points.xyz[0], points.xyz[1], points.xyz[2], n, points.value, gradient);
+  for_programs(points, n, [](const Evaluator& solid, Points<T>& at, size_t count) {
+    T* to[3] = {at.gradient[0], at.gradient[1], at.gradient[2]};
+    solid.gradient_block(at.xyz[0], at.xyz[1], at.xyz[2], count, at.value, to);
+  });
   for (size_t i = 0; i < n; ++i) {
     int face;
     const T clip = clip_value(bounds_, points, i, face);
     if (!(clip < points.value[i])) continue;
     points.value[i] = clip;
     for (int axis = 0; axis < 3; ++axis) {
-      gradient[axis][i] = T(axis == face ? 1 : axis + 3 == face ? -1 : 0);
+      points.gradient[axis][i] = T(axis == face ? 1 : axis + 3 == face ? -1 : 0);
     }
   }
 }
@@ -59,8 +127,8 @@ template void Field::evaluate(Points<double>&, size_t) const;
 template void Field::differentiate(Points<float>&, size_t) const;
 template void Field::differentiate(Points<double>&, size_t) const;
 
-Interval Field::interval(const BoundingBox& box) const {
-  Interval result = solid_.interval(box);
+Interval Field::clipped(const Interval& solid, const BoundingBox& box) const {
+  Interval result = solid;
   for (int axis = 0; axis < 3; ++axis) {
     const Interval at{box.lo[axis], box.hi[axis]};
     result = min(result, min(at - Interval(bounds_.lo[axis]), Interval(bounds_.hi[axis]) - at));

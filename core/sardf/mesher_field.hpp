@@ -1,7 +1,9 @@
 // The field that is meshed: the solid's, clipped by the bounds. Private to core/sardf/mesher*.cpp.
 #pragma once
 
-#include "sardf/evaluate.hpp"
+#include <optional>
+
+#include "sardf/mesher_programs.hpp"
 
 namespace sardf::mesher {
 
@@ -22,6 +24,13 @@ class Field {
  public:
   Field(const Evaluator& solid, const BoundingBox& bounds) : solid_(solid), bounds_(bounds) {}
 
+  /// Shorter programs to evaluate by; until then there are none. They change no value.
+  void use(Programs programs) { programs_ = std::move(programs); }
+  std::optional<Programs>& programs() { return programs_; }
+  const std::optional<Programs>& programs() const { return programs_; }
+  /// The solid's program for a node of the octree.
+  const Evaluator& program(const Index3& node, int level) const;
+
   /// Values of the first n points. NaN counts as outside everywhere.
   template <class T>
   void evaluate(Points<T>& points, size_t n) const;
@@ -29,14 +38,22 @@ class Field {
   template <class T>
   void differentiate(Points<T>& points, size_t n) const;
 
-  /// Encloses the values over the box.
-  Interval interval(const BoundingBox& box) const;
+  /// Encloses the values over the box, where the solid's are in this range.
+  Interval clipped(const Interval& solid, const BoundingBox& box) const;
   /// Bounds the length of the gradient over the box; may be infinite.
   double lipschitz(const BoundingBox& box) const;
 
  private:
+  // run(evaluator, points, count) on all points, those together that one program is good for.
+  template <class T, class Run>
+  void for_programs(Points<T>& points, size_t n, Run run) const;
+  // The program for each point, and whether it is one for all.
+  template <class T>
+  bool find_programs(const Points<T>& points, size_t n, const Evaluator** found) const;
+
   const Evaluator& solid_;
   BoundingBox bounds_;
+  std::optional<Programs> programs_;
 };
 
 /// The unit outward normal for a gradient; 0 where the gradient is 0 or not finite.

@@ -16,8 +16,6 @@
 
 namespace sardf::mesher {
 
-using Index3 = std::array<int32_t, 3>;
-
 /// Cells along the edge of a block.
 inline constexpr int block_cells = 8;
 
@@ -99,8 +97,9 @@ struct Vertices {
 
 Vec3 clamped(const Vec3& point, const BoundingBox& room);
 
-/// Throws Error when the mesh would not fit into `memory_limit` bytes.
-Cells find_cells(const Field& field, const Grid& grid, size_t memory_limit, Work& work);
+/// Throws Error when the mesh would not fit into `memory_limit` bytes. From then on the field has
+/// shorter programs for the blocks.
+Cells find_cells(Field& field, const Grid& grid, size_t memory_limit, Work& work);
 Pieces pieces_of(uint8_t inside, uint8_t joined);
 /// Settles ambiguous faces so that the mesh is manifold, then numbers vertices and makes faces.
 Net build_net(Cells& cells, const Grid& grid, Work& work);

@@ -44,6 +44,31 @@ struct Slope {
   double length = 0;
 };
 
+/// What a value can be over a box, in double and in float arithmetic.
+struct Enclosure {
+  Interval value;
+  bool may_be_nan = false;
+};
+
+/// Which values of a result matter: all up to the floor are as good as one another, and so are all
+/// from the ceiling on.
+struct Demand {
+  double floor = -infinity, ceiling = infinity;
+  friend bool operator==(const Demand&, const Demand&) = default;
+};
+
+/// What becomes of an operation over a box: it is computed, or its result is a copy of an input or
+/// a number, in every bit.
+struct Fate {
+  enum class Type : uint8_t { computed, copy, number };
+  Type type = Type::computed;
+  bool negated = false;
+  int input = 0;
+  double number = 0;
+  /// If it is computed: what matters of each input.
+  std::array<Demand, max_arity> demand;
+};
+
 /// Bulk evaluation of n points, n a multiple of 16. `in` and `out` are arrays of n.
 struct Kernels {
   using Value = void (*)(const void* op, const float* const* in, float* out, size_t n);
@@ -77,6 +102,10 @@ class Operation {
   /// Encloses the double result over all inputs in the intervals.
   virtual Interval interval(const Interval* in) const = 0;
   virtual Slope slope(const Slope* in) const = 0;
+  /// Encloses the double and the float result over all inputs in the ranges.
+  virtual Enclosure range(const Enclosure* in) const;
+  /// What becomes of the operation over these ranges where `demand` is what matters of its result.
+  virtual Fate fate(const Enclosure* in, const Demand& demand) const;
   /// Bound of |result - result with min/max in place of the blend| for equal inputs.
   virtual double blend_error() const = 0;
   /// Bound of the sum of the absolute partial derivatives over all inputs in the intervals.

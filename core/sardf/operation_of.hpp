@@ -28,8 +28,10 @@
 
 #include "sardf/error.hpp"
 #include "sardf/kernels.hpp"
+#include "sardf/numbers/choice.hpp"
 #include "sardf/numbers/gradient.hpp"
 #include "sardf/operation.hpp"
+#include "sardf/operation_fate.hpp"
 #include "sardf/parameter.hpp"
 
 namespace sardf {
@@ -64,6 +66,10 @@ class OperationOf final : public Operation {
     auto append = [&](const Parameter&, auto member) { append_numbers(numbers_, op_.*member); };
     if constexpr (requires { Op::parameters(append); }) Op::parameters(append);
     for (double a : numbers_) magnitude_ = std::max(magnitude_, std::abs(a));
+    std::array<Enclosure, arity> anything;
+    anything.fill({Interval::all(), true});
+    // A blend may add 0 to one of its arguments: the formula alone does not show that.
+    may_be_copy_ = join() != Join::none || choose(anything.data()).origin != Choice::computed;
   }
 
   static const OperationInfo& static_info() {
@@ -107,9 +113,13 @@ class OperationOf final : public Operation {
   }
 
   Interval interval(const Interval* in) const override {
-    if constexpr (is_monotone<Op>) return at_end_points(in);
+    if constexpr (is_monotone<Op>) {
+      if (rounding() <= 1 || !may_overflow(in)) return at_end_points(in);
+    }
     const Interval natural = apply(op_, in);
-    if constexpr (is_exact_distance<Op>) return intersect(natural, around_centre(in));
+    if constexpr (is_exact_distance<Op>) {
+      return may_overflow(in) ? natural : intersect(natural, around_centre(in));
+    }
     if constexpr (requires { Op::mean_value; }) return intersect(natural, by_mean_value(in));
     return natural;
   }
@@ -134,6 +144,38 @@ class OperationOf final : public Operation {
       out.length = min(out.length, spectral_bound({in, size_t(arity)}));
     }
     return out;
+  }
+
+  Enclosure range(const Enclosure* in) const override {
+    // Squares of more than this overflow floats.
+    constexpr double most = 0x1p60;
+    bool is_plain = magnitude_ < most;
+    for (int k = 0; k < arity; ++k) {
+      is_plain = is_plain && !in[k].may_be_nan && in[k].value.magnitude() < most;
+    }
+    // Of NaN and infinity the formula itself knows best what it makes.
+    if (!is_plain) return natural_range(in);
+    std::array<Interval, arity> values;
+    for (int k = 0; k < arity; ++k) values[k] = in[k].value;
+    if constexpr (is_monotone<Op>) {
+      return widened(at_end_points(values.data()), values.data());
+    }
+    if constexpr (is_exact_distance<Op>) {
+      const Interval near = widened(around_centre(values.data()), values.data()).value;
+      return {intersect(near, natural_range(in).value), false};
+    }
+    return natural_range(in);
+  }
+
+  Fate fate(const Enclosure* in, const Demand& demand) const override {
+    if (!may_be_copy_) return {};
+    const auto chosen = [this](const Enclosure* ranges) { return choose(ranges); };
+    if constexpr (is_monotone<Op> && arity == 2) {
+      std::array<Interval, arity> values{in[0].value, in[1].value};
+      const double error = float_error(Interval(largest(values.data())), values.data());
+      return fate_between(in, demand, Op::monotone, magnitude_, error, chosen);
+    }
+    return fate_of(chosen(in));
   }
 
   double gain(const Interval* in) const override {
@@ -164,17 +206,58 @@ class OperationOf final : public Operation {
  private:
   static double times(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
 
+  static constexpr double rounding() {
+    if constexpr (requires { Op::rounding; }) return Op::rounding;
+    return 16;
+  }
+
+  // Whether an end is so far away that its square overflows: the formula's double is infinite where
+  // the real value is not. An infinite end stands for all that is nearer.
+  static bool may_overflow(const Interval* in) {
+    constexpr double most = 0x1p500;
+    const auto is_far = [](double end) { return std::abs(end) >= most && std::isfinite(end); };
+    return std::any_of(in, in + arity, [&](Interval i) { return is_far(i.lo) || is_far(i.hi); });
+  }
+
   // Bound of the rounding error of `result`, a value for arguments up to `magnitude`.
   double rounding_error(double magnitude, double result) const {
-    double ulps = 16;
-    if constexpr (requires { Op::rounding; }) ulps = Op::rounding;
-    return ulps == 0 ? 0 : max(max(magnitude_, std::abs(result)), magnitude) * ulps * 0x1p-52;
+    const double ulps = rounding();
+    if (ulps == 0) return 0;
+    // The square of a number below 2^-511 is rounded to a multiple of 2^-1074, and the root of a
+    // sum of squares is then wrong by up to 2^-536. One sum or difference has no such error.
+    const double underflow = ulps > 1 ? 0x1p-530 : 0;
+    return max(max(magnitude_, std::abs(result)), magnitude) * ulps * 0x1p-52 + underflow;
   }
 
   static double largest(const Interval* in) {
     double magnitude = 0;
     for (int k = 0; k < arity; ++k) magnitude = max(magnitude, in[k].magnitude());
     return magnitude;
+  }
+
+  Choice choose(const Enclosure* in) const {
+    std::array<Choice, arity> at;
+    for (int k = 0; k < arity; ++k) at[k] = Choice::argument(k, in[k].value, in[k].may_be_nan);
+    return apply(op_, at.data());
+  }
+  Enclosure natural_range(const Enclosure* in) const {
+    const Choice result = choose(in);
+    return {result.range, result.may_be_nan};
+  }
+
+  // Bound of the error of a float result for equal inputs: what the law of the kernels allows.
+  double float_error(const Interval& result, const Interval* in) const {
+    if constexpr (requires { Op::rounding; }) {
+      if (Op::rounding == 0) return 0;
+      if (Op::rounding == 1) return result.magnitude() * 0x1p-23;
+    }
+    constexpr double tolerance = 2.2e-6, vanishing = 4e-19;
+    return max(max(magnitude_, result.magnitude()), largest(in)) * tolerance + vanishing;
+  }
+  Enclosure widened(const Interval& result, const Interval* in) const {
+    const double error = float_error(result, in);
+    const Choice known = Choice::of({result.lo - error, result.hi + error}, false);
+    return {known.range, known.may_be_nan};
   }
 
   Interval at_end_points(const Interval* in) const {
@@ -244,6 +327,7 @@ class OperationOf final : public Operation {
   Op op_;
   std::vector<double> numbers_;
   double magnitude_ = 0;
+  bool may_be_copy_ = false;
 };
 
 /// Makes the operation from a struct whose parameters are set.

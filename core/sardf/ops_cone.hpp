@@ -71,9 +71,14 @@ struct Cone : Solid {
     return shortcut(inside >= T(0.0), inside, [&] {
       const T disc = select(w < T(0.0), T(radius_bottom), T(radius_top));
       const T to_disc = length(max(r - disc, T(0.0)), cap);
-      const T t = min(max(T(dr) * from_r - T(dw) * from_w, T(0.0)), T(slant));
-      const T to_side = length(from_r - T(dr) * t, from_w + T(dw) * t);
-      return -min(to_disc, to_side);
+      const T along = T(dr) * from_r - T(dw) * from_w;
+      const T t = min(max(along, T(0.0)), T(slant));
+      // Beside the slanted side its line, which has a direction on it and in rounding of it.
+      const T to_side = select(along > T(0.0) && along < T(slant), abs(in),
+                               length(from_r - T(dr) * t, from_w + T(dw) * t));
+      const T nearest = min(to_disc, to_side);
+      // On a rim that rounding has outside, a length has no slope.
+      return select(nearest <= T(0.0), inside, -nearest);
     });
   }
 

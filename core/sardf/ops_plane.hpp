@@ -63,7 +63,8 @@ struct HalfPlane : PlaneSolid {
 };
 
 /// The nearest edge gives the magnitude; the sign is that of the nearest edge's line where the foot
-/// lies inside the edge, and the parity of crossings of a ray where it is a corner.
+/// lies inside the edge, and the parity of crossings of a ray where it is a corner. At a corner
+/// itself the gradient is the normal of one of its two edges, which points inwards.
 struct Polygon : PlaneSolid {
   static constexpr const char *name = "polygon",
                               *doc =
@@ -88,10 +89,13 @@ struct Polygon : PlaneSolid {
       const double ex = b[0] - a[0], ey = b[1] - a[1], squared = ex * ex + ey * ey;
       const T px = x - T(a[0]), py = y - T(a[1]);
       const T along = T(ex / squared) * px + T(ey / squared) * py;
-      const T t = min(max(along, T(0.0)), T(1.0));
-      const T edge_squared = square(px - T(ex) * t) + square(py - T(ey) * t);
+      // As the foot moves along the edge, neither the distance to it changes nor to its line.
+      const T t = freeze(min(max(along, T(0.0)), T(1.0)));
+      const T away_x = px - T(ex) * t, away_y = py - T(ey) * t;
+      const T edge_squared = square(away_x) + square(away_y);
+      // Exactly 0 at both ends of the edge.
       const T line =
-          T(turn_ * ex / std::sqrt(squared)) * py - T(turn_ * ey / std::sqrt(squared)) * px;
+          T(turn_ * ex / std::sqrt(squared)) * away_y - T(turn_ * ey / std::sqrt(squared)) * away_x;
       const T corner = select(along > T(0.0) && along < T(1.0), T(0.0), T(1.0));
       if (i == 0) {
         best_squared = edge_squared;
@@ -111,7 +115,9 @@ struct Polygon : PlaneSolid {
         parity = select(crosses, -parity, parity);
       }
     }
-    return shortcut(at_corner < T(0.5), best_line, [&] { return -parity * sqrt(best_squared); });
+    // No root has a slope at 0, but an edge's line has one.
+    const auto by_line = at_corner < T(0.5) || best_squared <= T(0.0);
+    return shortcut(by_line, best_line, [&] { return -parity * sqrt(best_squared); });
   }
 
  private:

@@ -43,10 +43,12 @@ class EarCutter {
     return falls <= 1;
   }
 
-  std::vector<Triple> cut() {
+  std::vector<Triple> cut(Pulse& pulse) {
     std::vector<Triple> triangles;
     size_t i = 0, tried = 0;
     while (left_.size() > 3) {
+      // One of many polygons: how much of all is done, does not change here.
+      pulse(0);
       const size_t n = left_.size(), before = (i + n - 1) % n, after = (i + 1) % n;
       const Triple ear{left_[before], left_[i], left_[after]};
       if (tried < n && !is_ear(ear)) {
@@ -86,11 +88,11 @@ class EarCutter {
 
 }  // namespace
 
-std::vector<Triple> triangulated(std::span<const Vec3> corners) {
+std::vector<Triple> triangulated(std::span<const Vec3> corners, Pulse& pulse) {
   const uint32_t n = uint32_t(corners.size());
   if (n > 3) {
     EarCutter cutter(corners);
-    if (!cutter.is_convex()) return cutter.cut();
+    if (!cutter.is_convex()) return cutter.cut(pulse);
   }
   std::vector<Triple> fan;
   for (uint32_t i = 1; i + 1 < n; ++i) fan.push_back({0, i, i + 1});

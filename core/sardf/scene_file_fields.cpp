@@ -253,17 +253,20 @@ std::vector<NamedField> FieldReader::named() const {
   return all;
 }
 
-Field FieldReader::field(const JsonPlace& place) {
+Field FieldReader::field(const JsonPlace& place) { return field_like(place, ""); }
+
+Field FieldReader::field_like(const JsonPlace& place, const std::string& otherwise) {
   const JsonValue& value = *place.value;
   if (value.is(Type::string)) return value.text.starts_with("=") ? formula(place) : by_name(place);
   if (value.is(Type::object)) return constructed_field(place);
-  wrong_type(place,
-             "a field (a name, a formula \"=...\", or an object such as {\"sphere\": {...}})");
+  wrong_type(
+      place,
+      otherwise + "a field (a name, a formula \"=...\", or an object such as {\"sphere\": {...}})");
   return {};
 }
 
 Field FieldReader::field_or_number(const JsonPlace& place) {
-  if (!place.value->is(Type::number)) return field(place);
+  if (!place.value->is(Type::number)) return field_like(place, "a number or ");
   const auto read = number(place, "the number");
   return read ? Field::number(*read) : Field();
 }

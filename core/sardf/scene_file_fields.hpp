@@ -36,6 +36,8 @@ class FieldReader : public ValueReader {
   std::vector<size_t> references(const JsonValue& value) const;
   std::vector<size_t> in_order_of_use(const JsonPlace& object);
   void report_circle(const JsonPlace& object, const std::vector<size_t>& circle);
+  /// `otherwise`: what messages say is accepted too.
+  Field field_like(const JsonPlace& place, const std::string& otherwise);
   Field formula(const JsonPlace& place);
   Field by_name(const JsonPlace& place);
   Field constructed_field(const JsonPlace& place);

@@ -133,14 +133,24 @@ std::optional<std::array<double, N>> ValueReader::numbers(const JsonPlace& place
   return good ? std::optional(out) : std::nullopt;
 }
 
-template <size_t N>
-std::optional<std::vector<std::array<double, N>>> ValueReader::points(const JsonPlace& place,
-                                                                      const ParameterInfo& info) {
+// Of two numbers: in the plane z = 0.
+std::optional<Vec3> ValueReader::point(const JsonPlace& place) {
+  const std::string accepted = "2 or 3 numbers";
+  if (!place.value->is(Type::array) || place.value->elements.size() != 2) {
+    return numbers<3>(place, accepted);
+  }
+  const auto flat = numbers<2>(place, accepted);
+  return flat ? std::optional(Vec3{(*flat)[0], (*flat)[1], 0}) : std::nullopt;
+}
+
+template <class Read>
+auto ValueReader::points(const JsonPlace& place, const ParameterInfo& info, const Read& read)
+    -> std::optional<std::vector<typename decltype(read(place))::value_type>> {
   if (!list(place, type_name(info.type))) return std::nullopt;
-  std::vector<std::array<double, N>> out;
+  std::vector<typename decltype(read(place))::value_type> out;
   bool good = true;
   for (size_t i = 0; i < place.value->elements.size(); ++i) {
-    const auto point = numbers<N>(place.element(i), std::to_string(N) + " numbers");
+    const auto point = read(place.element(i));
     good = good && point;
     if (point) out.push_back(*point);
   }
@@ -166,7 +176,8 @@ std::optional<PointGrid> ValueReader::point_grid(const JsonPlace& place,
   PointGrid out;
   bool good = true;
   for (size_t i = 0; i < place.value->elements.size(); ++i) {
-    auto row = points<3>(place.element(i), info);
+    auto row = points(place.element(i), info,
+                      [&](const JsonPlace& point) { return numbers<3>(point, "3 numbers"); });
     good = good && row;
     out.push_back(std::move(row).value_or(std::vector<Vec3>{}));
   }
@@ -327,14 +338,15 @@ std::optional<Value> ValueReader::argument(const JsonPlace& place, const Paramet
       if (const auto name = text(place)) read = file_path(*name);
       break;
     case ParameterType::points2:
-      read = as_value(points<2>(place, info));
+      read = as_value(
+          points(place, info, [&](const JsonPlace& at) { return numbers<2>(at, "2 numbers"); }));
       break;
     case ParameterType::points3:
-      read = as_value(points<3>(place, info));
+      read = as_value(points(place, info, [&](const JsonPlace& at) { return point(at); }));
       break;
     case ParameterType::field:
     case ParameterType::optional_field: {
-      const Field one = field(place);
+      const Field one = field_or_number(place);
       if (one) read = one;
       break;
     }

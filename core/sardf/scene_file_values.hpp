@@ -84,9 +84,11 @@ class ValueReader {
   std::optional<double> any_number(const JsonPlace& place);
   template <size_t N>
   std::optional<std::array<double, N>> numbers(const JsonPlace& place, const std::string& accepted);
-  template <size_t N>
-  std::optional<std::vector<std::array<double, N>>> points(const JsonPlace& place,
-                                                           const ParameterInfo& info);
+  std::optional<Vec3> point(const JsonPlace& place);
+  /// `read`: reads one point.
+  template <class Read>
+  auto points(const JsonPlace& place, const ParameterInfo& info, const Read& read)
+      -> std::optional<std::vector<typename decltype(read(place))::value_type>>;
   template <class T>
   std::optional<Value> as_value(const std::optional<T>& read) {
     return read ? std::optional<Value>(*read) : std::nullopt;

@@ -186,7 +186,7 @@ class SceneWriter {
                         std::is_same_v<T, std::string>) {
             return JsonValue::of(a);
           } else if constexpr (std::is_same_v<T, Field>) {
-            return field(a);
+            return field_or_number(a);
           } else if constexpr (std::is_same_v<T, BlendPointer>) {
             return blend_json(*a);
           } else if constexpr (std::is_same_v<T, std::vector<Field>>) {

@@ -38,12 +38,14 @@ JsonValue list_of(const JsonValue& element, double fewest = 0) {
   return made;
 }
 
-JsonValue tuple(const JsonValue& element, double n) {
+JsonValue tuple(const JsonValue& element, double least, double most) {
   return object({{"type", text("array")},
                  {"items", element},
-                 {"minItems", JsonValue::of(n)},
-                 {"maxItems", JsonValue::of(n)}});
+                 {"minItems", JsonValue::of(least)},
+                 {"maxItems", JsonValue::of(most)}});
 }
+
+JsonValue tuple(const JsonValue& element, double n) { return tuple(element, n, n); }
 
 JsonValue formula() { return object({{"type", text("string")}, {"pattern", text("^=")}}); }
 
@@ -119,10 +121,10 @@ JsonValue of_type(ParameterType type, Range range, int at_least) {
     case ParameterType::points2:
       return list_of(tuple(number(range), 2), at_least);
     case ParameterType::points3:
-      return list_of(tuple(number(range), 3), at_least);
+      return list_of(tuple(number(range), 2, 3), at_least);
     case ParameterType::field:
     case ParameterType::optional_field:
-      return reference("field");
+      return reference("field_or_number");
     case ParameterType::fields:
       return list_of(reference("field"), at_least);
     case ParameterType::values:

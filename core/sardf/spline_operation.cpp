@@ -90,6 +90,12 @@ class SplineOperation final : public DataOperation {
                       sqrt(squares).hi);
   }
 
+  SplineReach reach() const {
+    SplineReach out{{Interval::all(), Interval::all(), Interval::all()}, derived_};
+    for (int k = 0; k < grid_.dimensions; ++k) out.box[k] = {grid_.lower[k], grid_.upper[k]};
+    return out;
+  }
+
   Expression derivative(int k, std::span<const Expression> inputs) const override {
     if (grid_.degrees[size_t(k)] == 0) return nullptr;
     SplineGrid less = grid_;
@@ -241,6 +247,12 @@ class SplineOperation final : public DataOperation {
 OperationPointer spline_operation(const SplineGrid& grid, std::vector<double> coefficients) {
   assert(coefficients.size() == grid.size());
   return std::make_shared<SplineOperation>(grid, std::move(coefficients), Flags{});
+}
+
+std::optional<SplineReach> spline_reach(const Operation& operation) {
+  const auto* spline = dynamic_cast<const SplineOperation*>(&operation);
+  if (!spline) return std::nullopt;
+  return spline->reach();
 }
 
 }  // namespace sardf

@@ -1,13 +1,9 @@
 #include "sardf/surface.hpp"
 
 #include "sardf/mesher.hpp"
+#include "sardf/pulse.hpp"
 
 namespace sardf {
-
-Progress part_of(const Progress& whole, double from, double to) {
-  if (!whole) return {};
-  return [whole, from, to](double share) { return whole(from + share * (to - from)); };
-}
 
 Mesh make_surface(const Scene& scene, const SurfaceOptions& options, const Progress& progress,
                   Atlas* atlas) {

@@ -21,7 +21,4 @@ struct SurfaceOptions {
 Mesh make_surface(const Scene& scene, const SurfaceOptions& options, const Progress& progress = {},
                   Atlas* atlas = nullptr);
 
-/// A progress that reports the share [from, to] of a longer work.
-Progress part_of(const Progress& whole, double from, double to);
-
 }  // namespace sardf

@@ -2,29 +2,109 @@
 
 #include <unordered_map>
 
+#include "sardf/operation_of.hpp"
+
 namespace sardf {
 
-Tape::Tape(std::span<const Expression> outputs) : kept_alive_(outputs.begin(), outputs.end()) {
-  const std::vector<const Node*> order = topological_order(outputs);
-  std::unordered_map<const Node*, uint32_t> uses, place;
-  for (const Node* node : order) {
-    for (const Expression& input : node->arguments()) ++uses[input.get()];
-  }
-  for (const Expression& output : outputs) ++uses[output.get()];
+namespace {
 
-  std::vector<uint32_t> free;
-  for (const Node* node : order) {
-    if (node->type == Node::Type::coordinate) {
-      place[node] = node->axis;
-    } else if (node->type == Node::Type::constant) {
-      place[node] = uint32_t(registers_++);
-      constants_.push_back({place[node], node->value});
+// Constants that have a register of their own.
+constexpr size_t most_constants = 256;
+
+/// A number as an operation.
+struct Number {
+  static constexpr const char *name = "number", *doc = "a number";
+  static constexpr Kind kind = Kind::internal;
+  static constexpr int arity = 0;
+  double value = 0;
+  template <class V>
+  static void parameters(V& v) {
+    v(Parameter{"value", "the number"}, &Number::value);
+  }
+  template <class T>
+  T eval() const {
+    return T(value);
+  }
+};
+
+struct Source {
+  std::vector<Expression> expressions;
+  std::vector<OperationPointer> numbers;
+};
+
+class CodeOf {
+ public:
+  explicit CodeOf(std::span<const Expression> outputs)
+      : order_(topological_order(outputs)), source_(std::make_shared<Source>()) {
+    source_->expressions.assign(outputs.begin(), outputs.end());
+    value_.reserve(order_.size());
+    place_constants();
+    for (const Node* node : order_) {
+      if (node->type != Node::Type::operation) continue;
+      Code::Step step{node->operation.get(), {}};
+      for (int i = 0; i < node->arity; ++i) step.in[i] = value_of(node->inputs[i].get());
+      value_[node] = append(step);
+    }
+    for (const Expression& output : outputs) code_.outputs.push_back(value_of(output.get()));
+    code_.source = source_;
+  }
+
+  const Code& code() const { return code_; }
+
+ private:
+  void place_constants() {
+    for (const Node* node : order_) {
+      if (node->type == Node::Type::coordinate) {
+        value_[node] = node->axis;
+      } else if (node->type == Node::Type::constant && code_.constants.size() < most_constants) {
+        value_[node] = uint32_t(3 + code_.constants.size());
+        code_.constants.push_back(node->value);
+      }
     }
   }
-  for (const Node* node : order) {
-    if (node->type != Node::Type::operation) continue;
-    Instruction instruction{node->operation.get(), {}, 0};
-    for (int i = 0; i < node->arity; ++i) instruction.in[i] = place[node->inputs[i].get()];
+
+  uint32_t append(const Code::Step& step) {
+    code_.steps.push_back(step);
+    return uint32_t(2 + code_.constants.size() + code_.steps.size());
+  }
+
+  uint32_t value_of(const Node* node) {
+    const auto [at, is_new] = value_.try_emplace(node);
+    if (!is_new) return at->second;
+    source_->numbers.push_back(make_operation(Number{node->value}));
+    return at->second = append({source_->numbers.back().get(), {}});
+  }
+
+  std::vector<const Node*> order_;
+  std::shared_ptr<Source> source_;
+  std::unordered_map<const Node*, uint32_t> value_;
+  Code code_;
+};
+
+}  // namespace
+
+Tape::Tape(std::span<const Expression> outputs) : Tape(CodeOf(outputs).code()) {}
+
+Tape::Tape(const Code& code) : source_(code.source), outputs_(code.outputs) {
+  const uint32_t first = uint32_t(3 + code.constants.size());
+  for (uint32_t c = 3; c < first; ++c) constants_.push_back({c, code.constants[c - 3]});
+  registers_ = first;
+  // The step that uses a value last; outputs are used to the end.
+  constexpr uint32_t always = UINT32_MAX;
+  std::vector<uint32_t> last(code.steps.size(), 0), place(code.steps.size());
+  for (uint32_t s = 0; s < code.steps.size(); ++s) {
+    for (int k = 0; k < code.steps[s].operation->info().arity; ++k) {
+      const uint32_t value = code.steps[s].in[k];
+      if (value >= first) last[value - first] = s;
+    }
+  }
+  for (const uint32_t value : code.outputs) {
+    if (value >= first) last[value - first] = always;
+  }
+  std::vector<uint32_t> free;
+  instructions_.reserve(code.steps.size());
+  for (uint32_t s = 0; s < code.steps.size(); ++s) {
+    Instruction instruction{code.steps[s].operation, code.steps[s].in, 0};
     // The result may not overwrite an input: kernels read and write in steps of their own width.
     if (free.empty()) {
       instruction.out = uint32_t(registers_++);
@@ -32,15 +112,21 @@ Tape::Tape(std::span<const Expression> outputs) : kept_alive_(outputs.begin(), o
       instruction.out = free.back();
       free.pop_back();
     }
-    for (const Expression& input : node->arguments()) {
-      if (--uses[input.get()] == 0 && input->type == Node::Type::operation) {
-        free.push_back(place[input.get()]);
-      }
+    place[s] = instruction.out;
+    for (int k = 0; k < instruction.operation->info().arity; ++k) {
+      uint32_t& in = instruction.in[k];
+      if (in < first) continue;
+      const uint32_t step = in - first;
+      in = place[step];
+      if (last[step] != s) continue;
+      free.push_back(in);
+      last[step] = always;
     }
-    place[node] = instruction.out;
     instructions_.push_back(instruction);
   }
-  for (const Expression& output : outputs) outputs_.push_back(place[output.get()]);
+  for (uint32_t& value : outputs_) {
+    if (value >= first) value = place[value - first];
+  }
 }
 
 }  // namespace sardf

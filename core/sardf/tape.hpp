@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -15,13 +16,29 @@ struct Instruction {
   uint32_t out;
 };
 
+/// A program whose values are numbered: 0, 1, 2 are x, y, z, then come the constants, then the
+/// results of the steps, in order.
+struct Code {
+  struct Step {
+    const Operation* operation;
+    std::array<uint32_t, max_arity> in;  // values
+  };
+  std::vector<double> constants;
+  std::vector<Step> steps;
+  std::vector<uint32_t> outputs;  // values
+  /// Keeps the operations alive.
+  std::shared_ptr<const void> source;
+};
+
 /// Registers 0, 1, 2 hold x, y, z; then come the constants', which are filled once; the others are
-/// shared by values whose lives do not overlap.
+/// shared by values whose lives do not overlap. Of very many constants only some have a register of
+/// their own; instructions without inputs make the others where they are needed.
 class Tape {
  public:
   Tape() = default;
   explicit Tape(std::span<const Expression> outputs);
   explicit Tape(const Expression& output) : Tape(std::span(&output, 1)) {}
+  explicit Tape(const Code& code);
 
   const std::vector<Instruction>& instructions() const { return instructions_; }
   /// The register of each output.
@@ -32,9 +49,11 @@ class Tape {
     double value;
   };
   const std::vector<Constant>& constants() const { return constants_; }
+  /// What keeps the operations alive.
+  const std::shared_ptr<const void>& source() const { return source_; }
 
  private:
-  std::vector<Expression> kept_alive_;
+  std::shared_ptr<const void> source_;
   std::vector<Instruction> instructions_;
   std::vector<Constant> constants_;
   std::vector<uint32_t> outputs_;

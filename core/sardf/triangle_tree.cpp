@@ -190,10 +190,12 @@ constexpr double far_away = 64, farthest = 1e8;
 }  // namespace
 
 TriangleTree::TriangleTree(std::span<const Vec3> vertices,
-                           std::span<const std::array<uint32_t, 3>> triangles) {
+                           std::span<const std::array<uint32_t, 3>> triangles, Pulse& pulse) {
   Vec3 lo = vertices[triangles[0][0]], hi = lo;
-  for (const auto& triangle : triangles) {
-    for (const uint32_t corner : triangle) {
+  pulse.stage(0.1);
+  for (size_t i = 0; i < triangles.size(); ++i) {
+    pulse.step(i, triangles.size());
+    for (const uint32_t corner : triangles[i]) {
       for (size_t k = 0; k < 3; ++k) {
         lo[k] = std::min(lo[k], vertices[corner][k]);
         hi[k] = std::max(hi[k], vertices[corner][k]);
@@ -211,20 +213,26 @@ TriangleTree::TriangleTree(std::span<const Vec3> vertices,
   std::vector<TriangleBox> boxes(triangles.size());
   std::vector<Vec3> local(vertices.size());
   tbb::this_task_arena::isolate([&] {
-    tbb::parallel_for(size_t(0), vertices.size(),
-                      [&](size_t i) { local[i] = to_local(vertices[i]); });
+    tbb::parallel_for(size_t(0), vertices.size(), [&](size_t i) {
+      pulse.step(i, vertices.size());
+      local[i] = to_local(vertices[i]);
+    });
     tbb::parallel_for(size_t(0), triangles.size(), [&](size_t i) {
+      pulse.step(i, triangles.size());
       const auto& [a, b, c] = triangles[i];
       boxes[i] = TriangleBox::around(local[a], local[b], local[c], uint32_t(i));
     });
-    nodes_ = build_nodes(boxes);
+    pulse.stage(0.8);
+    nodes_ = build_nodes(boxes, pulse);
   });
 
   // Vertices in the order of their first use: those of near triangles lie near in memory.
   constexpr uint32_t unused = ~0u;
   std::vector<uint32_t> number(vertices.size(), unused);
   triangles_.reserve(triangles.size());
+  pulse.stage(1);
   for (const TriangleBox& box : boxes) {
+    pulse.step(triangles_.size(), triangles.size());
     Triangle made{triangles[box.number()], box.number() << 1};
     for (uint32_t& corner : made.corners) {
       if (number[corner] == unused) {

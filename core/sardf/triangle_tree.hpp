@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "sardf/pulse.hpp"
 #include "sardf/vec.hpp"
 
 namespace sardf {
@@ -46,7 +47,9 @@ class TriangleTree {
   };
 
   /// At least one triangle, fewer than 2^31; corners are places in `vertices`. All finite.
-  TriangleTree(std::span<const Vec3> vertices, std::span<const std::array<uint32_t, 3>> triangles);
+  /// Throws Cancelled where the pulse does.
+  TriangleTree(std::span<const Vec3> vertices, std::span<const std::array<uint32_t, 3>> triangles,
+               Pulse& pulse = Pulse::none());
 
   /// The nearest of all points of the triangles; of several triangles equally near, the first as
   /// given. `point` is finite. A `guess`, a triangle that may be near, saves time and changes

@@ -3,6 +3,7 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 
 #include "sardf/numbers/lanes.hpp"
@@ -67,7 +68,7 @@ class Binning {
 
 class Builder {
  public:
-  explicit Builder(std::vector<TriangleBox>& boxes) : boxes_(boxes) {}
+  Builder(std::vector<TriangleBox>& boxes, Pulse& pulse) : boxes_(boxes), pulse_(pulse) {}
 
   // Appends the part's nodes; its root comes first.
   void build(Range range, int level, std::vector<Node>& out) {
@@ -80,6 +81,7 @@ class Builder {
       std::array<std::vector<Node>, 4> made;
       const auto build_part = [&](size_t i) {
         if (i < count && parts[i].size() > leaf_size) build(parts[i], level + 1, made[i]);
+        if (parts[i].size() <= grain) done_ += parts[i].size();
       };
       tbb::parallel_invoke([&] { build_part(0); }, [&] { build_part(1); }, [&] { build_part(2); },
                            [&] { build_part(3); });
@@ -112,7 +114,10 @@ class Builder {
 
   void set_box(Node& node, size_t child, Range range) const {
     Box box;
-    for (size_t i = range.first; i < range.last; ++i) box.add(lo(boxes_[i]), hi(boxes_[i]));
+    for (size_t i = range.first; i < range.last; ++i) {
+      poll(i);
+      box.add(lo(boxes_[i]), hi(boxes_[i]));
+    }
     for (int axis = 0; axis < 3; ++axis) {
       node.lo[axis][child] = box.lo.v[axis];
       node.hi[axis][child] = box.hi.v[axis];
@@ -151,6 +156,7 @@ class Builder {
   size_t split(Range range, int level) {
     Box centres;
     for (size_t i = range.first; i < range.last; ++i) {
+      poll(i);
       const Float4 centre = lo(boxes_[i]) + hi(boxes_[i]);
       centres.add(centre, centre);
     }
@@ -160,6 +166,7 @@ class Builder {
     const auto right =
         std::partition(boxes_.begin() + long(range.first), boxes_.begin() + long(range.last),
                        [&](const TriangleBox& b) {
+                         poll(size_t(&b - boxes_.data()));
                          return binning.bins_of(lo(b), hi(b))[size_t(best.axis)] < best.bin;
                        });
     return size_t(right - boxes_.begin());
@@ -169,6 +176,7 @@ class Builder {
     std::array<std::array<Box, bins>, 3> box;
     std::array<std::array<uint32_t, bins>, 3> count{};
     for (size_t i = range.first; i < range.last; ++i) {
+      poll(i);
       const Float4 from = lo(boxes_[i]), to = hi(boxes_[i]);
       const std::array<int, 3> at = binning.bins_of(from, to);
       for (size_t axis = 0; axis < 3; ++axis) {
@@ -210,7 +218,14 @@ class Builder {
     }
   }
 
+  // For each box that is looked at.
+  void poll(size_t i) const {
+    if (i % 1024 == 0) pulse_(double(done_) / double(boxes_.size()));
+  }
+
   std::vector<TriangleBox>& boxes_;
+  Pulse& pulse_;
+  std::atomic<size_t> done_{0};  // boxes in parts of one thread that are built
 };
 
 float rounded_down_to_float(double a) {
@@ -231,9 +246,9 @@ TriangleBox TriangleBox::around(const Vec3& a, const Vec3& b, const Vec3& c, uin
   return box;
 }
 
-std::vector<Node> build_nodes(std::vector<TriangleBox>& boxes) {
+std::vector<Node> build_nodes(std::vector<TriangleBox>& boxes, Pulse& pulse) {
   std::vector<Node> nodes;
-  Builder(boxes).build({0, boxes.size()}, 0, nodes);
+  Builder(boxes, pulse).build({0, boxes.size()}, 0, nodes);
   return nodes;
 }
 

@@ -16,7 +16,8 @@ struct TriangleBox {
   uint32_t number() const { return uint32_t(hi[3]) << 16 | uint32_t(lo[3]); }
 };
 
-/// Sorts the boxes so that each leaf's are neighbours, and returns the nodes.
-std::vector<TriangleTree::Node> build_nodes(std::vector<TriangleBox>& boxes);
+/// Sorts the boxes so that each leaf's are neighbours, and returns the nodes. Throws Cancelled
+/// where the pulse does.
+std::vector<TriangleTree::Node> build_nodes(std::vector<TriangleBox>& boxes, Pulse& pulse);
 
 }  // namespace sardf

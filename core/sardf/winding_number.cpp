@@ -55,17 +55,19 @@ double change(double distance, double reach) {
 
 }  // namespace
 
-WindingNumber::WindingNumber(const TriangleTree& tree, bool turned)
+WindingNumber::WindingNumber(const TriangleTree& tree, bool turned, Pulse& pulse)
     : tree_(tree), sign_(turned ? -1 : 1), cells_(tree.nodes().size()) {
   const std::vector<TriangleTree::Node>& nodes = tree.nodes();
   tbb::this_task_arena::isolate([&] {
     tbb::parallel_for(size_t(0), nodes.size(), [&](size_t i) {
+      pulse.step(i, nodes.size());
       for (size_t child = 0; child < 4; ++child) {
         if (nodes[i].count[child] > 0) cells_[i][child] = cell_of_leaf(nodes[i], child);
       }
     });
   });
   for (size_t i = nodes.size(); i-- > 0;) {
+    pulse.step(nodes.size() - i, nodes.size());
     for (size_t child = 0; child < 4; ++child) {
       if (nodes[i].count[child] > 0 || nodes[i].missing(child)) continue;
       cells_[i][child] = cell_of_node(nodes[i], child);

@@ -20,8 +20,10 @@ namespace sardf {
 /// A / (4 π d²) · q² (3 - 2 q) / (1 - q)². The sum of these bounds is known with each value.
 class WindingNumber {
  public:
-  /// Keeps a reference to the tree. `turned`: as if every triangle faced the other way.
-  explicit WindingNumber(const TriangleTree& tree, bool turned = false);
+  /// Keeps a reference to the tree. `turned`: as if every triangle faced the other way. Throws
+  /// Cancelled where the pulse does.
+  explicit WindingNumber(const TriangleTree& tree, bool turned = false,
+                         Pulse& pulse = Pulse::none());
 
   /// Values between which the winding number is all over the ball (local coordinates). With radius
   /// 0 the interval does not hold 1/2 or is narrower than 2 * accuracy.

@@ -97,6 +97,61 @@ TEST(Faces, OfABoxAreRectangles) {
   for (const Vec3& p : random_points(8, 200, 4)) EXPECT_NEAR(whole.value(p), parts.value(p), 1e-12);
 }
 
+// Between the rounded edges: the box's rectangles without a margin of the radius.
+TEST(Faces, OfARoundedBoxAreItsFlatParts) {
+  const Vec3 center{0.5, -0.25, 1}, size{2, 3, 4};
+  const Field box = make_field("rounded_box", {center, size, 0.4});
+  std::vector<Patch> all;
+  for (size_t face = 0; face < 6; ++face) {
+    const size_t axis = face / 2, b = (axis + 1) % 3, c = (axis + 2) % 3;
+    Vec3 corner = center, along_b{}, along_c{};
+    corner[axis] += face % 2 ? 0.5 * size[axis] : -0.5 * size[axis];
+    corner[b] -= 0.5 * size[b] - 0.4;
+    corner[c] -= 0.5 * size[c] - 0.4;
+    along_b[b] = size[b] - 0.8;
+    along_c[c] = size[c] - 0.8;
+    all.push_back(parallelogram(corner, along_b, along_c));
+    expect_distances(faces_of(box, {double(face)}), {all.back()}, 90 + face);
+  }
+  expect_distances(faces_of(box, {1, 2, 4}), {all[1], all[2], all[4]}, 96);
+  // Where the edges leave nothing flat, it is a point.
+  const Evaluator top(
+      faces_of(make_field("rounded_box", {Vec3{}, Vec3{2, 2, 2}, 1.0}), {5}).expression());
+  EXPECT_NEAR(top.value({3, 4, 1}), 5, 1e-14);
+  // On the flat parts the rounded box is 0, and beyond them it is not.
+  const Evaluator solid(box.expression());
+  EXPECT_NEAR(solid.value(all[1](0, 1)), 0, 1e-15);
+  EXPECT_LT(solid.value(all[1](-0.1, 1)), -1e-3);
+}
+
+TEST(Faces, OfABox2dAreItsEdges) {
+  const Vec2 center{0.5, -1}, size{3, 2};
+  const Field rectangle = make_field("box2d", {center, size});
+  const auto edges = [&](double low, double high) {
+    const Vec3 up{0, 0, high - low};
+    return std::vector<Patch>{
+        parallelogram({-1, -2, low}, {0, 2, 0}, up), parallelogram({2, -2, low}, {0, 2, 0}, up),
+        parallelogram({-1, -2, low}, {3, 0, 0}, up), parallelogram({-1, 0, low}, {3, 0, 0}, up)};
+  };
+  const std::vector<Patch> endless = edges(-50, 50);
+  for (size_t edge = 0; edge < 4; ++edge) {
+    expect_distances(faces_of(rectangle, {double(edge)}), {endless[edge]}, 100 + edge);
+  }
+  expect_distances(faces_of(rectangle, {3, 0}), {endless[0], endless[3]}, 104);
+  // Extruded, its faces have the numbers of a box's.
+  const Field block = make_field("extrude", {rectangle, 5.0});
+  const Field box = make_field("box", {Vec3{0.5, -1, 0}, Vec3{3, 2, 5}});
+  for (size_t face = 0; face < 6; ++face) {
+    const Evaluator found(faces_of(block, {double(face)}).expression());
+    const Evaluator expected(faces_of(box, {double(face)}).expression());
+    for (const Vec3& p : random_points(105 + face, 50, 5)) {
+      EXPECT_NEAR(found.value(p), expected.value(p), 1e-14) << face;
+    }
+  }
+  EXPECT_EQ(error_of([&] { faces_of(rectangle, {4}); }),
+            "there is no face 4: the solid has 4 faces, numbered from 0 to 3");
+}
+
 // A line turned about z, twice: where one begins and ends the other goes on.
 std::vector<Patch> turned_line(double r0, double z0, double r1, double z1) {
   const auto from = [=](double start) {
@@ -215,7 +270,7 @@ TEST(Faces, ThatThereAreNotAreErrors) {
               HasSubstr("the solid has 7 faces, numbered from 0 to 6"));
   EXPECT_THAT(problem(make_field("sphere", {Vec3{}, 1.0}), {0}),
               HasSubstr("the solid is 'sphere', whose faces have no numbers; they are counted for "
-                        "box, cylinder with a height, cone, polygon"));
+                        "box, rounded_box, cylinder with a height, cone, box2d, polygon"));
   EXPECT_THAT(problem(make_field("cylinder", {Vec3{}, Vec3{0, 0, 1}, 1.0, Value()}), {0}),
               HasSubstr("the solid is 'cylinder'"));
   EXPECT_THAT(problem(Field::coordinate(0), {0}), HasSubstr("the solid is a formula"));

@@ -13,6 +13,7 @@
 #include "laws.hpp"
 #include "sardf/arithmetic.hpp"
 #include "sardf/certify.hpp"
+#include "sardf/shorten.hpp"
 
 namespace sardf {
 namespace {
@@ -121,12 +122,14 @@ TEST(DeepGraph, NeedsNoStack) {
     Expression deep = deep_tree(100000);
     const Expression moved = substitute(deep, {x + constant(1), y, z});
     const Evaluator evaluator(moved), original(deep);
-    EXPECT_EQ(evaluator.tape().instructions().size(), 100001u);
+    // 256 of the 50 000 constants have a register of their own.
+    EXPECT_EQ(evaluator.tape().instructions().size(), 100001u + 50000 - 256);
     EXPECT_EQ(evaluator.value({1, 3, 0}), original.value({2, 3, 0}));
     const BoundingBox box{{0, 2, 0}, {2, 4, 0}};
     const double value = evaluator.value({1, 3, 0});
     EXPECT_TRUE(evaluator.interval(box).contains(value));
     EXPECT_FALSE(std::isnan(evaluator.slope(box).length));
+    EXPECT_EQ(Shortening(evaluator, box).shortened().value({1, 3, 0}), value);
     EXPECT_NEAR(error_bound(moved), 100000 * 0.5 * (1 - std::sqrt(0.5)), 1e-6);
     std::vector<float> points(3 * 16, 2), out(16), gradient(3 * 16);
     evaluator.values(points.data(), 16, out.data());
@@ -153,6 +156,50 @@ TEST(DeepGraph, FieldsNeedNoStack) {
     EXPECT_LT(Evaluator(deep.expression()).value({0, 0, 0}), infinity);
   });
   EXPECT_EQ(live_nodes(), before);
+}
+
+// A union of half a million balls in a row, each beside the next.
+TEST(DeepGraphSlow, MayHaveAMillionNodes) {
+  const size_t before = live_nodes();
+  on_small_stack([] {
+    constexpr int count = 500000;
+    std::vector<Field> balls;
+    for (int i = 0; i < count; ++i) {
+      balls.push_back(make_field("sphere", {Vec3{3.0 * i, 0, 0}, 1.0}));
+    }
+    const Field all = make_field("union", {balls, make_blend("min_max", {})});
+    balls.clear();
+    const Evaluator full(all.expression());
+    EXPECT_EQ(full.tape().instructions().size(), 2u * count - 1);
+    EXPECT_EQ(full.value({3.0 * 70000, 0, 0.25}), 0.75);
+    const double middle = 3.0 * 400000;
+    const Shortening near(full, {{middle - 1, -1, -1}, {middle + 1, 1, 1}});
+    EXPECT_LT(near.shortened().tape().instructions().size(), 6u);
+    EXPECT_EQ(near.shortened().value({middle, 0.5, 0}), 0.5);
+  });
+  EXPECT_EQ(live_nodes(), before);
+}
+
+// Constants do not need a register each: 256 points of all of them would take a gigabyte.
+TEST(DeepGraphSlow, MayHaveManyConstants) {
+  Expression sum = x;
+  double expected = 2;
+  for (int i = 1; i <= 100000; ++i) {
+    sum = max(sum, y - constant(i + 0.25)) + constant(0.5 * i);
+    expected = std::max(expected, 2.75 - i) + 0.5 * i;
+  }
+  const Evaluator full(sum);
+  EXPECT_LT(full.tape().registers(), 300u);
+  EXPECT_EQ(full.value({2, 3, 0}), expected);
+  const Evaluator shorter = Shortening(full, {{1, 2, 0}, {3, 4, 0}}).shortened();
+  EXPECT_EQ(shorter.value({2, 3, 0}), expected);
+  EXPECT_LT(shorter.tape().registers(), 300u);
+  const double at[3] = {2, 3, 0};
+  double value, gradient[3];
+  full.gradients(at, 1, &value, gradient);
+  EXPECT_EQ(value, expected);
+  EXPECT_EQ(gradient[0] + gradient[1], 1);
+  EXPECT_TRUE(full.interval({{2, 3, 0}, {2, 3, 0}}).contains(expected));
 }
 
 TEST(Graph, NodesOfAnotherThreadAreFreed) {

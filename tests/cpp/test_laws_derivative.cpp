@@ -10,7 +10,7 @@ namespace {
 using laws::Random;
 
 // Equal to the gradients that evaluation gives, which come from the number type Gradient.
-// A field whose derivatives up to that order are known: of those found by a search it is the first.
+// A field whose derivatives up to that order are known: of those found by a search, the first two.
 Expression differentiable_field(Random& r, int depth, int order) {
   return laws::retried([&] {
     const Expression f = laws::random_field(r, depth).expression();

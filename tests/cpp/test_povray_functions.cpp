@@ -228,8 +228,8 @@ TEST(PovrayFunctions, SplitBeforeTheLimitOfParameters) {
   }
   expect_same_values({{"both", plus(sum, product)}});
   Polygon star;
-  for (int k = 0; k < 300; ++k) {
-    const double angle = 2 * std::numbers::pi * k / 300, radius = k % 2 ? 1 : 1.8;
+  for (int k = 0; k < 260; ++k) {
+    const double angle = 2 * std::numbers::pi * k / 260, radius = k % 2 ? 1 : 1.8;
     star.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle)});
   }
   expect_same_values({{"star", apply_to(star, {X, Y})}});

@@ -11,9 +11,12 @@
 #include "povray_harness.hpp"
 #include "sampled_shapes.hpp"
 #include "sardf/arithmetic.hpp"
+#include "sardf/curve_set.hpp"
+#include "sardf/derivative.hpp"
 #include "sardf/error.hpp"
 #include "sardf/operation_of.hpp"
 #include "sardf/ops.hpp"
+#include "sardf/spline_operation.hpp"
 
 namespace sardf {
 namespace {
@@ -238,6 +241,29 @@ TEST(PovraySamples, OfNearestPointsAreRightAwayFromWhereTheyJump) {
   }
 }
 
+// Of a line through the whole scene: distance, nearest point and its derivatives are samples.
+TEST(PovraySamples, OfSecondDerivativesAreNear) {
+  CurveData data;
+  data.control_points = {{-5, 0.2, 0}, {5, 0.2, 0}};
+  data.degree = 1;
+  const Expression u =
+      call(distance_operation(std::make_shared<CurveSet>("c", "", data)), {X, Y, Z});
+  const Expression bend = derivative(derivative(u, 1), 1);
+  const PovrayScene scene = scene_with({{"bend", bend}});
+  const SceneText text = povray::scene_text(scene, "part.inc", coarse());
+  EXPECT_EQ(text.sampled.size(), 3u);
+  std::vector<Vec3> points;
+  for (const Vec3& p : random_points(scene.bounds, 1000)) {
+    if (std::hypot(p[1] - 0.2, p[2]) > 0.3) points.push_back(p);
+  }
+  const std::vector<double> found = in_povray(text, "part_bend", points);
+  for (size_t i = 0; i < points.size(); ++i) {
+    const double y = points[i][1] - 0.2, z = points[i][2], d = std::hypot(y, z);
+    // The distance's samples are off by some 1e-3, which is divided by its square.
+    EXPECT_NEAR(found[i], z * z / (d * d * d), 0.05);
+  }
+}
+
 TEST(PovraySamplesSlow, OfJumpsAreNotRefinedInVain) {
   const auto set = std::make_shared<TestPoints>("dots", three_points);
   const Expression exact = call(nearest_operation(set, 0), {X, Y, Z});
@@ -245,6 +271,61 @@ TEST(PovraySamplesSlow, OfJumpsAreNotRefinedInVain) {
   const size_t samples = text.sampled.at(0)->samples().grid().size();
   EXPECT_LT(samples, 2200000u);
   EXPECT_GT(samples, 1900000u) << "a jump lies within 1/125 of the box";
+}
+
+// Cubic, on [-half, half] along x and y.
+Expression spline(double half) {
+  const SplineGrid grid = spline_grid({-half, -half, 0}, {half, half, 0}, {5, 4}, 3);
+  std::vector<double> coefficients;
+  for (size_t i = 0; i < grid.size(); ++i) coefficients.push_back(std::sin(double(3 * i)));
+  const std::array<Expression, 2> xy{X, Y};
+  return call(spline_operation(grid, coefficients), xy);
+}
+
+// Second derivatives prove an error that shrinks with the square of the step.
+TEST(PovraySamples, OfSmoothSplinesAreProvenAboutAsExactAsTheyAre) {
+  for (double most : {4000.0, 40000.0}) {
+    const SceneText text =
+        povray::scene_text(scene_with({{"a", spline(1.2)}}), "a.inc", coarse(most));
+    const povray::SampleError& error = text.sampled.at(0)->error();
+    EXPECT_GE(error.proven, error.measured);
+    EXPECT_LE(error.proven, 2 * error.measured);
+  }
+  expect_stated_error(spline(1.2));
+}
+
+// The derivative of a spline jumps to 0 beyond its box: that must not spoil the samples along the
+// faces of a part that fills the box but for the padding of its bounds.
+TEST(PovraySamples, OfSplinesKeepToTheirBoxes) {
+  const Expression value = spline(1);
+  const Expression slope = value->operation->derivative(0, value->arguments());
+  PovrayScene scene = scene_with({{"height", spline(1)}, {"slope", slope}});
+  scene.bounds = {{-1.0002, -1.0002, -1.0002}, {1.0002, 1.0002, 1.0002}};
+  const SceneText text = povray::scene_text(scene, "part.inc", coarse());
+  ASSERT_EQ(text.sampled.size(), 2u);
+  for (const SampledPointer& sampled : text.sampled) {
+    EXPECT_LT(sampled->error().proven, 0.002) << sampled->description();
+    for (size_t k : {0u, 1u}) {
+      EXPECT_EQ(sampled->samples().grid().box[k].lo, -1);
+      EXPECT_EQ(sampled->samples().grid().box[k].hi, 1);
+    }
+  }
+  // Beyond the box the spline goes on as its samples do.
+  const std::vector<Vec3> beyond = random_points({{-1.5, -1.5, -1}, {1.5, 1.5, 1}}, 1000);
+  EXPECT_LE(largest_difference(spline(1), beyond, in_povray(text, "part_height", beyond)),
+            text.sampled[0]->error().proven);
+  const std::vector<Vec3> inside = random_points({{-1, -1, -1}, {1, 1, 1}}, 1000);
+  EXPECT_LE(largest_difference(slope, inside, in_povray(text, "part_slope", inside)),
+            text.sampled[1]->error().proven);
+}
+
+TEST(PovraySamples, OfADerivativeShowItsJumpInsideAPartThatIsLargerThanItsBox) {
+  const Expression value = spline(0.7);
+  const Expression slope = value->operation->derivative(0, value->arguments());
+  const SceneText text = povray::scene_text(scene_with({{"slope", slope}}), "part.inc", coarse());
+  EXPECT_EQ(text.sampled.at(0)->error().proven, infinity);
+  std::vector<Vec3> beyond = random_points({{0.75, -0.6, -1}, {1, 0.6, 1}}, 100);
+  EXPECT_LT(largest_difference(constant(0), beyond, in_povray(text, "part_slope", beyond)), 1e-9);
 }
 
 TEST(PovraySamples, MayBeTheInputsOfOthers) {

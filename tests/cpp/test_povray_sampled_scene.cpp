@@ -181,6 +181,7 @@ class PovraySampledFiles : public testing::Test {
     files_.look = "flat";
     files_.width = files_.height = 24;
     files_.camera = scene_camera(*scene_, 24, 24);
+    files_.all_fields = true;
   }
   std::vector<std::string> names() const {
     std::vector<std::string> out;
@@ -199,8 +200,9 @@ class PovraySampledFiles : public testing::Test {
 TEST_F(PovraySampledFiles, ReplaceThoseOfAnEarlierRunAndAreFoundByPovray) {
   std::ofstream(folder_ / "part_sampled_1.df3") << "stale";
   const std::vector<std::string> sentences = povray::write_files(*scene_, files_);
-  ASSERT_EQ(sentences.size(), 1u);
+  ASSERT_EQ(sentences.size(), 2u);
   EXPECT_THAT(sentences[0], testing::StartsWith("wave: "));
+  EXPECT_THAT(sentences[1], testing::StartsWith("wave: differs from the exact one by at most 0"));
   EXPECT_EQ(names(), (std::vector<std::string>{"part.inc", "part.pov", "part_sampled_1.df3"}));
   const std::string bytes = contents(folder_ / "part_sampled_1.df3");
   const auto size = [&](size_t k) {
@@ -214,6 +216,114 @@ TEST_F(PovraySampledFiles, ReplaceThoseOfAnEarlierRunAndAreFoundByPovray) {
       << "behind the last sample POV-Ray goes on with the first";
   povray::render_files(files_, folder_ / "part.exr", {});
   EXPECT_TRUE(fs::exists(folder_ / "part.exr"));
+}
+
+TEST_F(PovraySampledFiles, AreNotWrittenForFieldsThatThePictureDoesNotNeed) {
+  files_.all_fields = false;
+  const std::vector<std::string> sentences = povray::write_files(*scene_, files_);
+  EXPECT_THAT(sentences, testing::ElementsAre(
+                             "not written, because the picture does not need their samples: wave"));
+  EXPECT_EQ(names(), (std::vector<std::string>{"part.inc", "part.pov"}));
+  const std::string text = contents(folder_ / "part.inc");
+  EXPECT_NE(text.find("\n// " + sentences[0] + "\n"), std::string::npos);
+  EXPECT_EQ(text.find("_wave"), std::string::npos);
+}
+
+// The curve in space is not needed: one layer is enough for that in the plane.
+TEST(PovraySampledScene, APlanarUseOfACurveIsSampledInThePlane) {
+  const Expression in_space = dots();
+  const Expression in_plane = substitute(in_space, {X, Y, constant(0)});
+  PovrayScene scene = scene_of(exact_ball());
+  scene.fields = {{"curve", in_space}, {"u", in_plane}};
+  scene.color = {in_plane, in_plane, in_plane};
+  povray::SamplingOptions options = up_to(40000);
+  options.all_fields = false;
+  const SceneText text = povray::scene_text(scene, "scene.inc", options);
+  ASSERT_EQ(text.sampled.size(), 1u);
+  EXPECT_EQ(text.sampled[0]->samples().grid().counts[2], 1);
+  EXPECT_EQ(text.include.find("ball_curve"), std::string::npos);
+  EXPECT_NE(text.include.find("#declare ball_u = "), std::string::npos);
+  EXPECT_THAT(text.sentences.back(), testing::EndsWith(": curve"));
+  options.all_fields = true;
+  const SceneText all = povray::scene_text(scene, "scene.inc", options);
+  EXPECT_GT(all.sampled.at(0)->samples().grid().counts[2], 10);
+  EXPECT_NE(all.include.find("#declare ball_curve = "), std::string::npos);
+}
+
+class PovrayStaleFiles : public PovraySampledFiles {
+ protected:
+  // Writes the samples of the wave, then the scene without it.
+  void write_twice(const std::function<void()>& between = {}) {
+    povray::write_files(*scene_, files_);
+    ASSERT_TRUE(fs::exists(folder_ / "part_sampled_1.df3"));
+    if (between) between();
+    files_.all_fields = false;
+    povray::write_files(*scene_, files_);
+  }
+};
+
+TEST_F(PovrayStaleFiles, AreRemoved) {
+  write_twice();
+  EXPECT_EQ(names(), (std::vector<std::string>{"part.inc", "part.pov"}));
+}
+
+TEST_F(PovrayStaleFiles, AreOnlyThoseThatTheReplacedFileReads) {
+  write_twice([&] {
+    fs::copy_file(folder_ / "part_sampled_1.df3", folder_ / "part_sampled_2.df3");
+    fs::copy_file(folder_ / "part_sampled_1.df3", folder_ / "part_sampled_1.df3.df3");
+    fs::copy_file(folder_ / "part_sampled_1.df3", folder_ / "other_sampled_1.df3");
+  });
+  EXPECT_EQ(names(), (std::vector<std::string>{"other_sampled_1.df3", "part.inc", "part.pov",
+                                               "part_sampled_1.df3.df3", "part_sampled_2.df3"}));
+}
+
+TEST_F(PovrayStaleFiles, AreNotWhatAUserPutInTheirPlace) {
+  write_twice([&] { std::ofstream(folder_ / "part_sampled_1.df3") << "mine"; });
+  EXPECT_EQ(contents(folder_ / "part_sampled_1.df3"), "mine");
+}
+
+TEST_F(PovrayStaleFiles, AreNotSamplesOfAnotherSizeOrLinksToSome) {
+  write_twice([&] {
+    const std::string path = folder_ / "part_sampled_1.df3";
+    std::string bytes = contents(path);
+    std::swap(bytes[0], bytes[4]);  // as many samples, in other rows
+    std::swap(bytes[1], bytes[5]);
+    std::ofstream(path) << bytes;
+  });
+  EXPECT_TRUE(fs::exists(folder_ / "part_sampled_1.df3"));
+  files_.all_fields = true;
+  write_twice([&] {
+    fs::rename(folder_ / "part_sampled_1.df3", folder_ / "mine.df3");
+    fs::create_symlink("mine.df3", folder_ / "part_sampled_1.df3");
+  });
+  EXPECT_TRUE(fs::is_symlink(folder_ / "part_sampled_1.df3"));
+  EXPECT_TRUE(fs::exists(folder_ / "mine.df3"));
+}
+
+TEST_F(PovrayStaleFiles, AreNotNamedByAFileOfAUsers) {
+  write_twice([&] {
+    std::ofstream(folder_ / "part.inc")
+        << "#declare f = function { pattern { density_file df3 \"part_sampled_1.df3\" "
+           "interpolate 1 } }\n";
+  });
+  EXPECT_TRUE(fs::exists(folder_ / "part_sampled_1.df3"));
+}
+
+TEST_F(PovrayStaleFiles, AreFoundInFilesWithSpacesInTheirNames) {
+  files_.path =
+      folder_ / "a part with a long name of many words that must be wrapped somewhere.pov";
+  povray::write_files(*scene_, files_);
+  EXPECT_EQ(names().size(), 3u);
+  files_.all_fields = false;
+  povray::write_files(*scene_, files_);
+  EXPECT_EQ(names().size(), 2u);
+}
+
+TEST_F(PovrayStaleFiles, StayWhereWritingIsCancelled) {
+  povray::write_files(*scene_, files_);
+  files_.all_fields = false;
+  EXPECT_THROW(povray::write_files(*scene_, files_, [](double) { return false; }), Cancelled);
+  EXPECT_TRUE(fs::exists(folder_ / "part_sampled_1.df3"));
 }
 
 TEST_F(PovraySampledFiles, HaveTheNumberOfSamplesThatIsAskedFor) {

@@ -146,7 +146,7 @@ TEST(Scene, SaysWhatIsWrong) {
   EXPECT_THAT(problem(scene), HasSubstr("accepted are um, mm, cm, m and in"));
   scene = two_materials();
   scene.solid = half_space({}, {0, 0, 1});
-  scene.source = {"part.json", {{"/solid", 7}}};
+  scene.source = {"part.json", {{"/solid", 7}}, {}};
   EXPECT_THAT(problem(scene), testing::StartsWith("part.json:7: /solid: "));
   scene = two_materials();
   const MaterialFunctions some{{"red", formula("x - 1")}};

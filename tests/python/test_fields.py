@@ -124,6 +124,33 @@ def test_equal_fields_share_nodes():
     assert a((0, 0, 0)) == 1
 
 
+@pytest.mark.parametrize("as_points", [list, tuple, np.array])
+def test_points_of_a_plane_have_z_0(as_points):
+    flat = as_points([(0.0, 1.0), (2.0, 3.0), (4.0, 1.0), (5.0, 0.0)])
+    space = [(x, y, 0.0) for x, y in flat]
+    at = np.random.default_rng(3).uniform(-5, 5, (50, 3))
+    for make in (
+        lambda points: sardf.polyline(points, closed=True),
+        sardf.points,
+        sardf.bspline_curve,
+    ):
+        np.testing.assert_array_equal(make(flat)(at), make(space)(at))
+    mixed = sardf.points([(0, 0), (0, 0, 7)])
+    assert mixed((0, 0, 5)) == 2
+
+
+def test_second_derivatives_of_a_searched_distance():
+    # A straight line as a curve: the distance in the plane across it is that to a point.
+    line = sardf.bspline_curve([(-9, 0), (9, 0)], degree=1)
+    bend = sardf.formula("dy(dy(line))", line=line)
+    assert bend((1, 3, 4)) == pytest.approx((1 - 0.6**2) / 5, abs=1e-15)
+    message = r"third derivatives of a distance found by a search \('bspline_curve'\)"
+    with pytest.raises(sardf.Error, match=message):
+        sardf.formula("dx(bend)", bend=bend)
+    with pytest.raises(sardf.Error, match=message):
+        bend.gradient((1, 3, 4))
+
+
 @pytest.mark.parametrize(
     ("make", "message"),
     [
@@ -136,6 +163,13 @@ def test_equal_fields_share_nodes():
             "sphere: radius is nan; a positive number is accepted",
         ),
         (lambda: sardf.box(size=(1, 2)), "box: size is (1, 2); 3 numbers are accepted"),
+        (
+            lambda: sardf.polyline([(0, 0), (1, 2, 3, 4)]),
+            "polyline: vertices is (1, 2, 3, 4); a list of points of 2 or 3 numbers is accepted",
+        ),
+        (lambda: sardf.polyline([(0, 0), (1, "2")]), "a list of points of 2 or 3 numbers"),
+        (lambda: sardf.polyline([(0, 0), "ab"]), "a list of points of 2 or 3 numbers"),
+        (lambda: sardf.translate(by=(1, 2, 3)), "field is missing; a field or a number"),
         (
             lambda: sardf.revolve(sardf.sphere(radius=1)),
             "revolve: field depends on z; a field of x and y alone is accepted here",

@@ -23,6 +23,7 @@ from sardf._core import (
     y,
     z,
 )
+from sardf._render import render
 from sardf._scene import Scene, blend
 
 for _name in (*_core._constructors, *_core._blends.values()):
@@ -39,6 +40,7 @@ __all__ = [
     "blend",
     "formula",
     "load",
+    "render",
     "schema",
     "x",
     "y",

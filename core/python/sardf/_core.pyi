@@ -78,6 +78,11 @@ class Field:
         """
         ('exact' | 'bound' | 'estimate') inside and outside.
         """
+    @property
+    def is_distance(self) -> bool:
+        """
+        Whether its values are distances in scene units, or estimates of them as blends make; not of formulas and functions.
+        """
 class Mesh:
     """
     A closed surface of quads, wound counter-clockwise from outside.
@@ -126,9 +131,9 @@ class Scene:
     A solid, what it is made of, and how it is shown.
     """
     @staticmethod
-    def from_json(text: str, fields: collections.abc.Mapping[str, Field] = {}) -> Scene:
+    def from_json(text: str, fields: collections.abc.Mapping[str, Field] = {}, progress: typing.Any = None) -> Scene:
         """
-        A scene from a scene file's text; `fields` are names it may use besides its own.
+        A scene from a scene file's text; `fields` are names it may use besides its own. progress: as load() takes it.
         """
     def bake(self, mesh: Mesh, size: typing.SupportsInt | typing.SupportsIndex = 2048, channels: collections.abc.Sequence[str] = ['base_color', 'fractions'], gutter: typing.SupportsInt | typing.SupportsIndex = 8, sections: bool = True, progress: typing.Any = None) -> dict:
         """
@@ -146,9 +151,13 @@ class Scene:
         """
         The surface with texture coordinates for a texture of `size`². resolution: cells along the longest side; cell_size (scene units) instead when > 0. progress(share) may return False to cancel, which raises Cancelled.
         """
-    def povray(self, path: str, render: str = '', camera: typing.Any = None, look: str = 'shaded', width: typing.SupportsInt | typing.SupportsIndex = 640, height: typing.SupportsInt | typing.SupportsIndex = 480, samples: typing.SupportsInt | typing.SupportsIndex = 256, progress: typing.Any = None) -> None:
+    def povray(self, path: str, render: str = '', camera: typing.Any = None, look: str = 'shaded', width: typing.SupportsInt | typing.SupportsIndex = 640, height: typing.SupportsInt | typing.SupportsIndex = 480, samples: typing.SupportsInt | typing.SupportsIndex = 256, all_fields: bool = False, progress: typing.Any = None) -> None:
         """
-        Writes path (.pov), the .inc beside it, and density files (.df3) of what has no formula, whose errors the .inc states, for POV-Ray 3.7; renders them to `render` (.exr or .png) unless it is empty. camera: as camera() gives it; look: shaded, flat (the colours alone) or normals; samples: the most of what has no formula, as the edge of a cube, 8 to 512.
+        Writes path (.pov), the .inc beside it, and density files (.df3) of what has no formula, whose errors, and those of all that is computed from them, the .inc states, for POV-Ray 3.7; renders them to `render` (.exr or .png) unless it is empty. camera: as camera() gives it; look: shaded, flat (the colours alone) or normals; samples: the most of what has no formula, as the edge of a cube, 8 to 512; all_fields: also write the fields that need samples which the picture does not.
+        """
+    def render(self, width: typing.SupportsInt | typing.SupportsIndex = 640, height: typing.SupportsInt | typing.SupportsIndex = 480, look: str = 'shaded', camera: typing.Any = None, tolerance: typing.SupportsFloat | typing.SupportsIndex | None = None, background: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"] | None = None, depth: bool = False, normals: bool = False, samples: typing.SupportsInt | typing.SupportsIndex = 1, threads: typing.SupportsInt | typing.SupportsIndex = 0, progress: typing.Any = None) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        A picture by certified ray casting: float32 (height, width, 4), row 0 at the top, linear colour times alpha, then alpha. look: shaded, flat (the colours alone) or normals (0.5 + 0.5 n). camera: as camera() gives it. tolerance (scene units): no stretch of the solid that is longer along a ray is missed; none: 1e-4 of the bounds' diagonal. background: linear (r, g, b); none: alpha is 0 there. depth: one channel more, the depth along the view in scene units, inf where nothing is. normals: three channels more, the outward unit normal. samples: rays along each side of a pixel, 1 to 8, more smooth edges. threads: at most so many, 0: all; the picture does not depend on it.
         """
     def save(self, path: str) -> None:
         """
@@ -297,7 +306,7 @@ def boundary(solid: Field | float | str, where: Field | float | str = ..., faces
     
     solid: the solid
     where: only the part of the surface where this field is not negative; the result is then an estimate of the distance, good to first order away from the part's rim
-    faces: only these faces, exactly. Of a box 0 to 5 are -x, +x, -y, +y, -z, +z; of a cylinder with a height and of a cone 0 is the bottom, 1 the top, 2 the side; edge i of a polygon goes from corner i to the next; an extruded polygon has its edges, then the bottom, then the top. Moved solids keep their numbers
+    faces: only these faces, exactly. Of a box 0 to 5 are -x, +x, -y, +y, -z, +z, and of a rounded box its flat parts; of a cylinder with a height and of a cone 0 is the bottom, 1 the top, 2 the side; edges of a box2d are -x, +x, -y, +y; edge i of a polygon goes from corner i to the next; what is extruded has its edges, then the bottom, then the top. Moved solids keep their numbers
     """
 def box(center: typing.Sequence[float] = ..., size: typing.Sequence[float] = ...) -> Field:
     """
@@ -468,9 +477,9 @@ def extrude(field: Field | float | str, height: float) -> Field:
     field: a field of x and y
     height: full height (scene units); positive
     """
-def fitted(start: Field | float | str, factor: Field | float | str = ..., lower: typing.Sequence[float] = ..., upper: typing.Sequence[float] = ..., splines: typing.Sequence[float] | numpy.ndarray = ..., degree: float = ..., solid: Field | float | str = ..., points: float = ..., values: Field | float | str = ..., values_weight: float = ..., slope: Field | float | str = ..., along: Field | float | str = ..., slope_weight: float = ..., smoothness: float = ..., mean: float = ..., at_least: float = ..., at_most: float = ..., coefficients: typing.Sequence[float] | numpy.ndarray = ...) -> Field:
+def fitted(start: Field | float | str, factor: Field | float | str = ..., lower: typing.Sequence[float] = ..., upper: typing.Sequence[float] = ..., splines: typing.Sequence[float] | numpy.ndarray = ..., degree: float = ..., solid: Field | float | str = ..., points: float = ..., values: Field | float | str = ..., values_weight: float = ..., slope: Field | float | str = ..., along: Field | float | str = ..., slope_weight: float = ..., smoothness: float = ..., mean: float = ..., at_least: float = ..., at_most: float = ..., coefficients: typing.Sequence[float] | numpy.ndarray = ..., fingerprint: str = ..., progress: typing.Callable[[float], bool | None] | None = ...) -> Field:
     """
-    fitted(start, factor=None, lower, upper, splines, degree=3, solid=None, points=4, values=None, values_weight=1, slope=None, along=None, slope_weight=1, smoothness=0, mean=None, at_least=None, at_most=None, coefficients=())
+    fitted(start, factor=None, lower, upper, splines, degree=3, solid=None, points=4, values=None, values_weight=1, slope=None, along=None, slope_weight=1, smoothness=0, mean=None, at_least=None, at_most=None, coefficients=(), fingerprint='', progress=None)
     
     start + factor * Phi, where Phi is a sum of uniform B-splines on a box that brings the function near to what is wanted: the sum of the weighted terms given is as small as can be.
     
@@ -492,6 +501,8 @@ def fitted(start: Field | float | str, factor: Field | float | str = ..., lower:
     at_least: the function is nowhere less
     at_most: the function is nowhere more
     coefficients: the solution, as `sardf solve` writes it; remove it after any change of the other parameters
+    fingerprint: of the problem that the coefficients solve, as `sardf solve` writes it: another problem is an error; without one they are taken as they are
+    progress: called with the share done; may return False to cancel, which raises Cancelled
     """
 def formula(text: str, **kwargs) -> Field:
     """
@@ -556,9 +567,9 @@ def intersection(*of: Field, blend: Blend = ...) -> Field:
     of: the solids
     blend: how they are joined
     """
-def load(path: str) -> Scene:
+def load(path: str, progress: typing.Any = None) -> Scene:
     """
-    Reads a scene file. Raises Error with all that is wrong in it.
+    Reads a scene file, and solves for its fitted fields. Raises Error with all that is wrong in it. progress(share) may return False to cancel, which raises Cancelled.
     """
 def loft(sections: typing.Sequence[typing.Any], interpolation: str = ...) -> Field:
     """

@@ -163,9 +163,10 @@ struct Gradient {
   }
   friend Gradient pow(const Gradient& a, const Gradient& b) {
     const T power = pow(a.v, b.v);
-    // The derivative by a constant exponent is never needed, and ln of a negative base is none.
-    const T by_b = select(a.v > T(0.0), power * log(max(a.v, T(1e-300))), T(0.0));
-    return chain(a, b, power, b.v * pow(a.v, b.v - T(1.0)), by_b);
+    // The derivative by a constant exponent is never needed, and ln of a negative base is none. The
+    // smallest positive double stands in for it, so that ln of an interval is finite.
+    const T by_b = select(a.v > T(0.0), power * log(max(a.v, T(0x1p-1074))), T(0.0));
+    return chain(a, b, power, b.v * pow(a.v, b.v - T(1.0)), by_b + slope_of_exponents(a.v, b.v));
   }
 };
 

@@ -6,7 +6,8 @@ namespace sardf {
 
 namespace {
 
-// The C library's elementary functions are right within one unit in the last place; two are kept.
+// The C library's elementary functions are right within one unit in the last place. Two are kept:
+// the value at an end may be one too small and a value beside it one too large.
 constexpr double library_ulps = 2;
 
 double product(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
@@ -31,12 +32,8 @@ Interval operator*(Interval a, Interval b) {
 }
 
 Interval operator/(Interval a, Interval b) {
-  if (b.lo <= 0 && b.hi >= 0) {
-    if (b.lo == 0 && b.hi == 0) return Interval::all();
-    if (b.lo == 0 && a.lo >= 0) return {rounded_down(a.lo / b.hi), infinity};
-    if (b.lo == 0 && a.hi <= 0) return {-infinity, rounded_up(a.hi / b.hi)};
-    return Interval::all();
-  }
+  // Also where 0 is an end of b: 1 / -0 is -inf.
+  if (b.lo <= 0 && b.hi >= 0) return Interval::all();
   // A finite bound over an infinite one tends to 0.
   const Interval inverse{b.hi == infinity || b.hi == -infinity ? 0 : 1 / b.hi,
                          b.lo == infinity || b.lo == -infinity ? 0 : 1 / b.lo};
@@ -131,6 +128,8 @@ Interval pow(Interval a, Interval b) {
     const double most = b.lo < 0 ? infinity : rounded_up(max(m, n), library_ulps);
     return {-most, most};
   }
+  // A power of -0 may be -inf.
+  if (a.lo == 0 && b.lo < 0) return Interval::all();
   const double p = std::pow(a.lo, b.lo), q = std::pow(a.lo, b.hi);
   const double r = std::pow(a.hi, b.lo), s = std::pow(a.hi, b.hi);
   Interval all = widened(min(min(p, q), min(r, s)), max(max(p, q), max(r, s)));

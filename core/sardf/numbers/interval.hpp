@@ -1,4 +1,11 @@
 // The number type Interval: outward rounded enclosures, [lo, hi] holds every value over a box.
+//
+// [lo, hi] holds the real result of every step and the double one, infinities included, for all
+// arguments in the intervals, -0 as well as 0. Sums, products, quotients and roots are rounded to
+// nearest by IEEE 754 and then moved outwards; elementary functions rest on the C library's
+// documented error (glibc manual, "Known Maximum Errors in Math Functions": at most 1 ulp). Where a
+// step has no value (NaN: 0/0, inf - inf, the logarithm of a negative number) the formula is not
+// defined, and nothing is said of that point. No bound is ever NaN where the arguments' are not.
 #pragma once
 
 #include <cfloat>
@@ -11,10 +18,11 @@ namespace sardf {
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// A value rounded towards -inf (+inf) by at least `ulps` units in the last place. Overflow is
-/// undone: the largest finite number stands for any larger one.
+/// undone: the largest finite number stands for any larger one. Of NaN, from infinite ends such as
+/// inf - inf, nothing is known: -inf (+inf).
 inline double rounded_down(double a, double ulps = 1) {
-  if (a == infinity) return DBL_MAX;
-  return a == -infinity ? a : a - (abs(a) * ulps * 0x1p-52 + ulps * 0x1p-1074);
+  if (!(a < infinity)) return a == infinity ? DBL_MAX : -infinity;
+  return a - (abs(a) * ulps * 0x1p-52 + ulps * 0x1p-1074);
 }
 inline double rounded_up(double a, double ulps = 1) { return -rounded_down(-a, ulps); }
 
@@ -73,6 +81,12 @@ inline Interval max(Interval a, Interval b) { return {max(a.lo, b.lo), max(a.hi,
 inline Interval freeze(Interval a) { return a; }
 inline Interval slope_of_cut(Interval y, Interval x) {
   return x.lo <= 0 && y.lo <= 0 && y.hi >= 0 ? Interval::all() : 0;
+}
+/// What a changing exponent adds to the slope of a power where the base may be negative, which has
+/// powers at whole numbers only, or 0, whose power jumps at the exponent 0.
+inline Interval slope_of_exponents(Interval base, Interval exponent) {
+  const bool jumps = base.lo < 0 || (base.lo <= 0 && exponent.lo <= 0);
+  return jumps && exponent.lo < exponent.hi ? Interval::all() : 0;
 }
 inline Interval slope_of_steps(Interval a) { return a.lo < a.hi ? Interval{0, infinity} : 0; }
 Interval abs(Interval a);

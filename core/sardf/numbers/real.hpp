@@ -39,8 +39,9 @@ T larger(const T& a, const T& b) {
 }
 
 /// What has no bounded slope over an interval that holds the change: select between values that
-/// need not meet where the mask changes, a step function (the slope where its value is this), and
-/// the angle of (x, y) across its cut y = 0, x < 0 (what the cut adds to its slope).
+/// need not meet where the mask changes, a step function (the slope where its value is this), the
+/// angle of (x, y) across its cut y = 0, x < 0, and a power of a base that is not positive (what
+/// these add to their slopes).
 template <class Mask, class T>
 T jump(const Mask& mask, const T& a, const T& b) {
   return select(mask, a, b);
@@ -51,6 +52,11 @@ T slope_of_steps(const T&) {
 }
 template <class T>
 T slope_of_cut(const T&, const T&) {
+  return T(0.0);
+}
+
+template <class T>
+T slope_of_exponents(const T&, const T&) {
   return T(0.0);
 }
 

@@ -1,0 +1,236 @@
+#include "sardf/render.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sardf/error.hpp"
+#include "sardf/render_average.hpp"
+#include "sardf/render_rounding.hpp"
+#include "sardf/render_shading.hpp"
+#include "sardf/short_number.hpp"
+
+namespace sardf {
+
+namespace rendering {
+
+namespace {
+
+constexpr int tile_edge = 32, most_pixels = 16384, most_samples = 8;
+constexpr double default_tolerance = 1e-4;
+// Above this error, in diagonals, beams and steps in single precision stop too early to be of use.
+constexpr double most_single_error = 1e-3;
+// Steps of a ray in single precision and in double before intervals are tried, which cost more
+// than hundreds of steps in blocks.
+constexpr int single_steps = 512, double_steps = 512;
+
+void check_options(const RenderOptions& options, const BoundingBox& bounds) {
+  for (const int edge : {options.width, options.height}) {
+    if (edge >= 1 && edge <= most_pixels) continue;
+    throw Error("the picture has " + std::to_string(options.width) + " x " +
+                std::to_string(options.height) + " pixels; 1 to " + std::to_string(most_pixels) +
+                " are accepted for each");
+  }
+  if (options.samples < 1 || options.samples > most_samples ||
+      std::max(options.width, options.height) * options.samples > most_pixels) {
+    throw Error("the samples along a pixel's side are " + std::to_string(options.samples) +
+                "; 1 to " + std::to_string(most_samples) + " are accepted, and " +
+                std::to_string(most_pixels) + " along each side of the picture");
+  }
+  if (options.tolerance && !(*options.tolerance > 0 && *options.tolerance < infinity)) {
+    throw Error("the tolerance is " + short_number(*options.tolerance) +
+                "; a positive length is accepted");
+  }
+  if (options.threads < 0) {
+    throw Error("the number of threads is " + std::to_string(options.threads) +
+                "; 0 (all) or more are accepted");
+  }
+  const Vec3 size = bounds.size();
+  if (!(std::min({size[0], size[1], size[2]}) > 0) || !(norm(size) < infinity)) {
+    throw Error("the bounds of what is rendered must be finite and have positive size");
+  }
+}
+
+// Finer bounds of the slope pay where there are many rays.
+int slope_cells(const RenderOptions& options) {
+  const double pixels = double(options.width) * options.height;
+  return pixels < 5e4 ? 4 : pixels < 1e6 ? 8 : 16;
+}
+
+Subject make_subject(const Evaluator& solid, const BoundingBox& bounds,
+                     const RenderOptions& options, Watch& watch) {
+  const double diagonal = bounds.diagonal();
+  Subject subject{solid,
+                  bounds,
+                  Rays(options.camera, options.width, options.height),
+                  LocalSlopes(solid, bounds, slope_cells(options), [&] { watch.check(); }),
+                  options.tolerance.value_or(default_tolerance * diagonal),
+                  single_precision_error(solid, bounds),
+                  0};
+  subject.error_double = double_precision_error(bounds, std::min(subject.slopes.largest(), 1e6));
+  subject.single = subject.error_single < most_single_error * diagonal;
+  return subject;
+}
+
+// The rays of the tile's pixels that may show something, each at its end; until the thread's next
+// tile.
+std::span<const Ray> cast(const Subject& subject, const Tile& tile, const RenderOptions& options,
+                          Watch& watch) {
+  // Large enough that every tile would have the system map new pages for it.
+  thread_local std::vector<Ray> rays;
+  begin_rays(subject, tile, options.width, options.height, rays, watch);
+  if (subject.single) march<float>(subject, rays, single_steps, watch);
+  march<double>(subject, rays, double_steps, watch);
+  march_by_intervals(subject, rays, watch);
+  find_roots(subject, rays, watch);
+  return rays;
+}
+
+// take(tile, subject) for all tiles, on as many threads as the options say.
+template <class Take>
+void for_tiles(const Evaluator& solid, const BoundingBox& bounds, const RenderOptions& options,
+               const Progress& progress, Take take) {
+  check_options(options, bounds);
+  const int columns = (options.width + tile_edge - 1) / tile_edge;
+  const int rows = (options.height + tile_edge - 1) / tile_edge;
+  Watch watch(progress, size_t(columns) * rows);
+  // oneTBB would complain on standard error of more threads than it has.
+  const int most_threads = tbb::this_task_arena::max_concurrency();
+  tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, most_threads)
+                                            : tbb::task_arena::automatic);
+  arena.execute([&] {
+    const Subject subject = make_subject(solid, bounds, options, watch);
+    tbb::parallel_for(0, columns * rows, [&](int i) {
+      watch.check();
+      const Tile tile{i % columns * tile_edge, i / columns * tile_edge, tile_edge};
+      take(subject, tile, watch);
+      watch.tile_done();
+    });
+  });
+  watch.finish();
+}
+
+// Writes a tile of the picture.
+class Painter {
+ public:
+  Painter(const Scene& scene, const RenderOptions& options, Image& image)
+      : options_(options), image_(image) {
+    const std::array<Expression, 3> color = scene.base_color();
+    color_ = Evaluator(std::span<const Expression>(color));
+  }
+
+  void paint(const Subject& subject, const Tile& tile, Watch& watch) const {
+    const std::span<const Ray> rays = cast(subject, tile, options_, watch);
+    std::vector<Hit> hits;
+    std::vector<const Ray*> met;
+    hits.reserve(rays.size());
+    met.reserve(rays.size());
+    for (const Ray& ray : rays) {
+      if (ray.state != Ray::State::met) continue;
+      hits.push_back({ray.line.at(ray.beyond), -ray.per_length * ray.line.along});
+      met.push_back(&ray);
+    }
+    if (options_.look != RenderLook::flat || options_.normals) find_normals(subject, hits, watch);
+    color(subject, hits, watch);
+    for (size_t i = 0; i < hits.size(); ++i) set(met[i]->x, met[i]->y, hits[i], met[i]->beyond);
+  }
+
+  /// All that a pixel shows where there is nothing of the solid.
+  std::vector<float> background() const {
+    std::vector<float> pixel;
+    for (const double channel : options_.background.value_or(Vec3{})) {
+      pixel.push_back(float(channel));
+    }
+    pixel.push_back(options_.background ? 1 : 0);
+    if (options_.depth) pixel.push_back(float(infinity));
+    if (options_.normals) pixel.insert(pixel.end(), 3, 0);
+    return pixel;
+  }
+
+ private:
+  void color(const Subject& subject, std::vector<Hit>& hits, Watch& watch) const {
+    if (options_.look == RenderLook::normals) {
+      for (Hit& hit : hits) hit.color = 0.5 * (hit.normal + Vec3{1, 1, 1});
+      return;
+    }
+    find_colors(subject, color_, hits, watch);
+    if (options_.look == RenderLook::shaded) light(subject, hits, watch);
+  }
+
+  void set(int x, int y, const Hit& hit, double depth) const {
+    float* pixel = image_.at(x, y);
+    for (const double channel : hit.color) *pixel++ = float(channel);
+    *pixel++ = 1;
+    if (options_.depth) *pixel++ = float(depth);
+    if (!options_.normals) return;
+    for (const double component : hit.normal) *pixel++ = float(component);
+  }
+
+  const RenderOptions& options_;
+  Image& image_;
+  Evaluator color_;
+};
+
+}  // namespace
+
+}  // namespace rendering
+
+RenderLook render_look(const std::string& name) {
+  if (name == "flat") return RenderLook::flat;
+  if (name == "shaded") return RenderLook::shaded;
+  if (name == "normals") return RenderLook::normals;
+  throw Error("there is no look '" + name + "'; accepted are flat, shaded, normals" +
+              did_you_mean(name, {"flat", "shaded", "normals"}));
+}
+
+RenderedPicture render(const Scene& scene, const RenderOptions& options, const Progress& progress) {
+  if (options.samples > 1) {
+    rendering::check_options(options, scene.bounds());
+    RenderOptions fine = options;
+    fine.samples = 1;
+    fine.width *= options.samples;
+    fine.height *= options.samples;
+    RenderedPicture smooth = render(scene, fine, progress);
+    smooth.image =
+        rendering::averaged(smooth.image, options.samples, options.depth, options.normals);
+    return smooth;
+  }
+  RenderedPicture picture;
+  picture.channels = {"R", "G", "B", "A"};
+  if (options.depth) picture.channels.push_back("Z");
+  if (options.normals) picture.channels.insert(picture.channels.end(), {"NX", "NY", "NZ"});
+  rendering::check_options(options, scene.bounds());
+  Image& image = picture.image;
+  image = {options.width, options.height, int(picture.channels.size()), {}};
+  image.samples.reserve(size_t(image.width) * image.height * image.channels);
+  const rendering::Painter painter(scene, options, image);
+  const std::vector<float> behind = painter.background();
+  for (size_t i = size_t(image.width) * image.height; i > 0; --i) {
+    image.samples.insert(image.samples.end(), behind.begin(), behind.end());
+  }
+  const Evaluator drawn(scene.drawn());
+  rendering::for_tiles(drawn, scene.bounds(), options, progress,
+                       [&](const auto& subject, const auto& tile, auto& watch) {
+                         painter.paint(subject, tile, watch);
+                       });
+  return picture;
+}
+
+std::vector<double> render_depths(const Evaluator& solid, const BoundingBox& bounds,
+                                  const RenderOptions& options, const Progress& progress) {
+  rendering::check_options(options, bounds);
+  std::vector<double> depths(size_t(options.width) * options.height, infinity);
+  rendering::for_tiles(
+      solid, bounds, options, progress,
+      [&](const auto& subject, const rendering::Tile& tile, rendering::Watch& watch) {
+        for (const auto& ray : rendering::cast(subject, tile, options, watch)) {
+          if (ray.state != rendering::Ray::State::met) continue;
+          depths[size_t(ray.y) * options.width + ray.x] = ray.beyond;
+        }
+      });
+  return depths;
+}
+
+}  // namespace sardf

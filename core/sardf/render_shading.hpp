@@ -1,0 +1,30 @@
+// The colours of what rays meet; private to core/sardf/render*.cpp.
+#pragma once
+
+#include <span>
+
+#include "sardf/render.hpp"
+#include "sardf/render_stages.hpp"
+
+namespace sardf::rendering {
+
+/// A pixel that shows the solid.
+struct Hit {
+  Vec3 at;
+  Vec3 toward;    // unit, against the ray
+  Vec3 normal{};  // outward, unit; 0: the field has no direction there
+  Vec3 color{};   // linear
+};
+
+/// The outward normals of the hits.
+void find_normals(const Subject& subject, std::span<Hit> hits, Watch& watch);
+
+/// The colours themselves, as POV-Ray's flat picture has them: limited to [0, 1]. In single
+/// precision where that is seen to do.
+void find_colors(const Subject& subject, const Evaluator& color, std::span<Hit> hits, Watch& watch);
+
+/// Lights the colours: a key light with a soft shadow and two without, placed as in povray_gen's
+/// lit picture, and a share of the sky by distances along the normal.
+void light(const Subject& subject, std::span<Hit> hits, Watch& watch);
+
+}  // namespace sardf::rendering

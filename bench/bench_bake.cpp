@@ -1,9 +1,11 @@
-// Mesh, atlas and bake per stage: S3 with three materials and two channels, on one thread.
+// Mesh, atlas and bake per stage: S3 with three materials and two channels, on one thread; and a
+// base colour of 8192² texels beside the rates of its own evaluation at the texels' points.
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
 
 #include "../tests/cpp/bake_scenes.hpp"
 #include "sardf/bake_stages.hpp"
+#include "shapes.hpp"
 
 namespace sardf::test {
 namespace {
@@ -74,8 +76,7 @@ void find_and_project_points(benchmark::State& state) {
   for (auto _ : state)
     for (size_t tile = 0; tile < texels.layout().tiles(); ++tile) {
       baking::find_texels(texels.layout(), tile, points);
-      for (size_t i = 0; i < points.count; i += Evaluator::block_size)
-        baking::project(solid, points, i, std::min(Evaluator::block_size, points.count - i), 5e-6f);
+      baking::project(solid, points, 5e-6f);
       found += points.count;
     }
   state.SetItemsProcessed(int64_t(found));
@@ -92,12 +93,80 @@ void bake_two_channels(benchmark::State& state) {
   state.SetItemsProcessed(int64_t(covered));
 }
 
+constexpr int large = 8192;
+
+const Part& large_part() {
+  static const Part part(bench::shape(bench::Shape::blended_block), block_bounds(), resolution,
+                         large);
+  return part;
+}
+
+/// Points of every 16th tile of the large image, each as a bake evaluates it.
+struct CoveredPoints {
+  std::array<std::vector<float>, 3> at;
+  CoveredPoints() {
+    const TexelMap texels(large_part().mesh, large);
+    const Evaluator solid(large_part().solid);
+    const auto points = std::make_unique<baking::TilePoints>();
+    for (size_t tile = 0; tile < texels.layout().tiles(); tile += 16) {
+      baking::find_texels(texels.layout(), tile, *points);
+      baking::project(solid, *points, 5e-6f);
+      for (size_t axis = 0; axis < 3; ++axis)
+        at[axis].insert(at[axis].end(), points->point[axis].begin(),
+                        points->point[axis].begin() + points->count);
+    }
+  }
+};
+
+/// The evaluation alone, block by block: of the colour, or of the field and the colour.
+void evaluate_covered(benchmark::State& state) {
+  static const CoveredPoints points;
+  std::vector<Expression> outputs = bench::graded_block(2).color;
+  if (state.range(0)) outputs.push_back(large_part().solid);
+  const Evaluator evaluator(outputs);
+  constexpr size_t block = Evaluator::block_size;
+  Scratch<float> storage;
+  float* const rows = storage.get(outputs.size() * block);
+  std::vector<float*> out;
+  for (size_t k = 0; k < outputs.size(); ++k) out.push_back(rows + k * block);
+  const size_t count = points.at[0].size();
+  for (auto _ : state)
+    for (size_t i = 0; i < count; i += block) {
+      evaluator.block(&points.at[0][i], &points.at[1][i], &points.at[2][i],
+                      std::min(block, count - i), out.data());
+      benchmark::DoNotOptimize(rows);
+      benchmark::ClobberMemory();
+    }
+  state.SetItemsProcessed(int64_t(count) * int64_t(state.iterations()));
+}
+
+/// A bake of the base colour with so many threads; with or without the points' movement.
+void bake_base_color(benchmark::State& state) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  size_t(state.range(0)));
+  const Part& p = large_part();
+  const TexelMap texels(p.mesh, large);
+  const std::vector<BakeChannel> wanted{{"base_color", bench::graded_block(2).color}};
+  const auto ignore = [](size_t, Image&&, const std::vector<unsigned char>&) {};
+  size_t covered = 0;
+  for (auto _ : state)
+    covered += bake(texels, state.range(1) ? p.solid : nullptr, wanted, ignore).covered;
+  state.SetItemsProcessed(int64_t(covered));
+}
+
 BENCHMARK(make_surface_mesh)->Unit(benchmark::kMillisecond);
 BENCHMARK(unwrap)->Arg(2048)->Unit(benchmark::kMillisecond);
 BENCHMARK(index_texels)->Arg(2048)->Arg(4096)->Unit(benchmark::kMillisecond);
 BENCHMARK(find_points)->Arg(2048)->Arg(4096)->Unit(benchmark::kMillisecond);
 BENCHMARK(find_and_project_points)->Arg(2048)->Arg(4096)->Unit(benchmark::kMillisecond);
 BENCHMARK(bake_two_channels)->Arg(2048)->Arg(4096)->Unit(benchmark::kMillisecond);
+BENCHMARK(evaluate_covered)->ArgName("field")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(bake_base_color)
+    ->ArgNames({"threads", "move"})
+    ->ArgsProduct({{1, 2}, {0, 1}})
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace sardf::test

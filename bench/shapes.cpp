@@ -1,6 +1,8 @@
 #include "shapes.hpp"
 
 #include "sardf/constructor.hpp"
+#include "sardf/fractions.hpp"
+#include "sardf/inverse_shares.hpp"
 
 namespace sardf::bench {
 
@@ -34,6 +36,24 @@ Expression drilled_block(const BlendPointer& blend) {
 Expression shape(Shape which, const std::string& rounded) {
   if (which == Shape::spheres) return spheres();
   return drilled_block(which == Shape::block ? min_max_blend() : make_blend(rounded, {0.5}));
+}
+
+Graded graded_block(double exponent) {
+  const std::vector<std::string> materials{"bore", "low", "high"};
+  const Field hole = make_field("cylinder", {Vec3{}, Vec3{0, 0, 1}, 3.0, Value()});
+  const std::vector<Field> at{make_field("boundary", {hole}),
+                              make_field("point", {Vec3{10, -6, 4}}),
+                              make_field("point", {Vec3{-10, 6, 4}})};
+  std::vector<Record> features;
+  for (size_t m = 0; m < 3; ++m)
+    features.push_back({{at[m], Fractions::material(materials[m]), exponent, RuleValue()}});
+  Graded made;
+  made.fractions = lower(make_fractions("inverse_distance", {features}), materials,
+                         bounds(Shape::blended_block).diagonal());
+  for (const Vec3& of : {Vec3{0.1, 0.9, 0.3}, Vec3{0.2, 0.7, 0.6}, Vec3{0.3, 0.5, 0.9}}) {
+    made.color.push_back(weighted_sum(made.fractions, of));
+  }
+  return made;
 }
 
 BoundingBox bounds(Shape which) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include "sardf/evaluate.hpp"
 
@@ -13,6 +14,12 @@ enum class Shape { spheres, block, blended_block };
 /// 16 spheres in a plane with a box subtracted (min and max); a block with five holes and a torus
 /// (min and max); the same with a blend of radius 0.5.
 Expression shape(Shape which, const std::string& rounded = "sardf");
+/// What the block with rounded edges is made of: three materials by the distances to the bore's
+/// boundary and to two corners, to the power -exponent; and the colour that they average to.
+struct Graded {
+  std::vector<Expression> fractions, color;
+};
+Graded graded_block(double exponent);
 /// A box around the shape, 10 % larger.
 BoundingBox bounds(Shape which);
 std::string name(Shape which);

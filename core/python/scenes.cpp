@@ -94,8 +94,8 @@ Mesh mesh(const Scene& scene, int resolution, double cell_size, bool sections, i
 }
 
 py::array_t<float> to_array(Image&& image) {
-  auto* samples = new std::vector<float>(std::move(image.samples));
-  const py::capsule owner(samples, [](void* p) { delete static_cast<std::vector<float>*>(p); });
+  auto* samples = new ImageSamples(std::move(image.samples));
+  const py::capsule owner(samples, [](void* p) { delete static_cast<ImageSamples*>(p); });
   return py::array_t<float>({image.height, image.width, image.channels}, samples->data(), owner);
 }
 

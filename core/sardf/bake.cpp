@@ -38,49 +38,78 @@ double diagonal(const Mesh& mesh) {
 /// Some channels of a bake: one evaluator for all their components, and their images.
 class Group {
  public:
-  /// `report` throws to cancel.
-  Group(std::span<const BakeChannel> channels, int size, const std::function<void()>& report)
-      : channels_(channels) {
+  Group(std::span<const BakeChannel> channels, int size) : channels_(channels) {
     std::vector<Expression> outputs;
     for (const BakeChannel& channel : channels) {
       const int components = static_cast<int>(channel.components.size());
       images.push_back({size, size, components, {}});
-      clear(images.back(), report);
+      images.back().samples.resize(size_t(size) * size * components);
       outputs.insert(outputs.end(), channel.components.begin(), channel.components.end());
     }
     evaluator_ = Evaluator(outputs);
     undefined = std::vector<std::atomic<size_t>>(channels.size());
   }
 
-  /// Evaluates points[first, first + n) and writes their texels.
-  void evaluate(const baking::TilePoints& points, size_t first, size_t n, double nudge) {
-    std::vector<float> storage(evaluator_.outputs() * block_size);
+  /// Evaluates the points and writes their texels.
+  void evaluate(const baking::TilePoints& points, double nudge) {
+    thread_local Scratch<float> storage;
+    float* const rows = storage.get(evaluator_.outputs() * block_size);
     std::vector<float*> out(evaluator_.outputs());
-    for (size_t k = 0; k < out.size(); ++k) out[k] = storage.data() + k * block_size;
-    evaluator_.block(&points.point[0][first], &points.point[1][first], &points.point[2][first], n,
-                     out.data());
-    for (size_t i = 0; i < n; ++i) {
-      const bool finite = std::all_of(out.begin(), out.end(),
-                                      [i](const float* row) { return std::isfinite(row[i]); });
-      if (!finite) repair(points, first + i, nudge, i, out);
-    }
-    size_t row = 0;
-    for (Image& image : images)
-      for (int c = 0; c < image.channels; ++c, ++row)
-        for (size_t i = 0; i < n; ++i) {
-          const int texel = points.texel[first + i];
-          image.at(points.x + texel % baking::tile_size, points.y + texel / baking::tile_size)[c] =
-              out[row][i];
+    for (size_t k = 0; k < out.size(); ++k) out[k] = rows + k * block_size;
+    for (size_t first = 0; first < points.count; first += block_size) {
+      const size_t n = std::min(block_size, points.count - first);
+      evaluator_.block(&points.point[0][first], &points.point[1][first], &points.point[2][first], n,
+                       out.data());
+      if (!all_finite(out, n)) repair(points, first, n, nudge, out);
+      baking::for_runs(points, first, n, [&](size_t i, size_t count, int x, int y) {
+        const float* const* from = out.data();
+        for (Image& image : images) {
+          interleave(from, i - first, count, image.channels, image.at(x, y));
+          from += image.channels;
         }
+      });
+    }
   }
 
   std::vector<Image> images;
   std::vector<std::atomic<size_t>> undefined;
 
  private:
-  /// Replaces what is not finite by the double path's value there or close by, at last by 0.
-  void repair(const baking::TilePoints& points, size_t p, double nudge, size_t i,
+  static bool all_finite(const std::vector<float*>& rows, size_t n) {
+    bool all = true;
+    for (const float* row : rows)
+      for (size_t i = 0; i < n; ++i) all &= std::abs(row[i]) <= std::numeric_limits<float>::max();
+    return all;
+  }
+
+  /// Texels of n components from an array for each.
+  static void interleave(const float* const* from, size_t first, size_t count, int n, float* to) {
+    if (n == 3) {
+      const float *a = from[0] + first, *b = from[1] + first, *c = from[2] + first;
+      for (size_t i = 0; i < count; ++i) {
+        to[3 * i] = a[i];
+        to[3 * i + 1] = b[i];
+        to[3 * i + 2] = c[i];
+      }
+      return;
+    }
+    const size_t stride = size_t(n);
+    for (size_t c = 0; c < stride; ++c)
+      for (size_t i = 0; i < count; ++i) to[stride * i + c] = from[c][first + i];
+  }
+
+  void repair(const baking::TilePoints& points, size_t first, size_t n, double nudge,
               const std::vector<float*>& out) {
+    for (size_t i = 0; i < n; ++i) {
+      const bool finite = std::all_of(out.begin(), out.end(),
+                                      [i](const float* row) { return std::isfinite(row[i]); });
+      if (!finite) repair_point(points, first + i, nudge, i, out);
+    }
+  }
+
+  /// Replaces what is not finite by the double path's value there or close by, at last by 0.
+  void repair_point(const baking::TilePoints& points, size_t p, double nudge, size_t i,
+                    const std::vector<float*>& out) {
     const Vec3 point{points.point[0][p], points.point[1][p], points.point[2][p]};
     std::vector<double> values(out.size());
     const auto take = [&](const Vec3& from) {
@@ -99,16 +128,6 @@ class Group {
           out[row][i] = 0;
         }
       undefined[channel] += lost;
-    }
-  }
-
-  /// Makes all samples 0, step by step: a large image takes more than a tenth of a second.
-  static void clear(Image& image, const std::function<void()>& report) {
-    const size_t row = size_t(image.width) * image.channels, all = row * image.height;
-    image.samples.reserve(all);
-    while (image.samples.size() < all) {
-      report();
-      image.samples.resize(std::min(all, image.samples.size() + 256 * row));
     }
   }
 
@@ -144,22 +163,21 @@ class Baker {
   }
 
   void run(Group& group, const Progress& progress, double from, double to) {
+    found = 0;
     for_tiles(layout_.tiles(), progress, from, to, [&](size_t tile) {
       const auto points = std::make_unique<baking::TilePoints>();
       baking::find_texels(layout_, tile, *points);
-      for (size_t first = 0; first < points->count; first += block_size) {
-        const size_t n = std::min(block_size, points->count - first);
-        if (solid_) baking::project(*solid_, *points, first, n, tolerance_);
-        group.evaluate(*points, first, n, nudge_);
-      }
-      for (size_t i = 0; i < points->count; ++i) {
-        const int texel = points->texel[i], y = points->y + texel / baking::tile_size;
-        covered[size_t(y) * layout_.size + points->x + texel % baking::tile_size] = 1;
-      }
+      found += points->count;
+      if (solid_) baking::project(*solid_, *points, tolerance_);
+      group.evaluate(*points, nudge_);
+      baking::for_runs(*points, 0, points->count, [&](size_t, size_t count, int x, int y) {
+        std::fill_n(&covered[size_t(y) * layout_.size + x], count, 1);
+      });
     });
   }
 
   std::vector<unsigned char> covered;
+  std::atomic<size_t> found{0};  // covered texels
 
  private:
   const baking::UvLayout& layout_;
@@ -193,12 +211,11 @@ BakeReport bake(const TexelMap& texels, const Expression& solid,
     const size_t n = count_within(channels.subspan(first), texels.size(), memory);
     const double from = double(first) / double(channels.size());
     const double to = double(first + n) / double(channels.size());
-    Group group(channels.subspan(first, n), texels.size(), [&] {
-      if (progress && !progress(from)) throw Cancelled();
-    });
+    if (progress && !progress(from)) throw Cancelled();
+    Group group(channels.subspan(first, n), texels.size());
     baker.run(group, progress, from, to);
     if (first == 0) {
-      report.covered = size_t(std::count(baker.covered.begin(), baker.covered.end(), 1));
+      report.covered = baker.found;
       if (report.covered == 0)
         throw Error("no texel lies on the mesh: its texture coordinates are outside [0, 1]");
     }

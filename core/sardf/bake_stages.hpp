@@ -3,6 +3,7 @@
 // Texel coordinates here: x right and y down, in texels, whole numbers at texel centres.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -72,10 +73,24 @@ struct TilePoints {
   std::array<float, tile_texels> limit;                  // how far the point may be moved
 };
 
+/// work(i, count, x, y) for the runs of points[first, first + n) whose texels (x, y), (x + 1, y),
+/// ... of the image lie side by side; i is the first one's index.
+template <class Work>
+void for_runs(const TilePoints& points, size_t first, size_t n, Work work) {
+  for (size_t i = first; i < first + n;) {
+    const int texel = points.texel[i], row = texel / tile_size;
+    const size_t most = std::min(first + n - i, size_t((row + 1) * tile_size - texel));
+    size_t count = 1;
+    while (count < most && points.texel[i + count] == texel + static_cast<int>(count)) ++count;
+    work(i, count, points.x + texel % tile_size, points.y + row);
+    i += count;
+  }
+}
+
 /// Fills `points` for a tile.
 void find_texels(const UvLayout& layout, size_t tile, TilePoints& points);
 
-/// Moves points[first, first + n) onto the zero set of `solid`; n <= Evaluator::block_size.
-void project(const Evaluator& solid, TilePoints& points, size_t first, size_t n, float tolerance);
+/// Moves the points that are farther than `tolerance`, by the field, onto the zero set of `solid`.
+void project(const Evaluator& solid, TilePoints& points, float tolerance);
 
 }  // namespace sardf::baking

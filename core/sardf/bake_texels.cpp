@@ -79,6 +79,48 @@ Vec3 unit_or_zero(const Vec3& a) {
   return length > 0 ? (1 / length) * a : Vec3{};
 }
 
+/// A number for each texel of a tile, by rows.
+using Numbers = std::array<uint32_t, tile_texels>;
+constexpr uint32_t nothing = UINT32_MAX;
+
+using Floats = std::array<float, 3>;
+Floats floats(const Vec3& a) { return {float(a[0]), float(a[1]), float(a[2])}; }
+
+/// A triangle of the mesh and of the UV map; a point of the map is at t + b s + c r.
+struct Triangle {
+  Vec2 t, s, r;
+  double inverse;  // of the determinant of s and r
+  Vec3 p, e1, e2;
+  Floats normal;
+  float limit;
+
+  double b(double x, double y) const { return ((x - t[0]) * r[1] - (y - t[1]) * r[0]) * inverse; }
+  double c(double x, double y) const { return (s[0] * (y - t[1]) - s[1] * (x - t[0])) * inverse; }
+  Vec3 point(double x, double y) const { return p + b(x, y) * e1 + c(x, y) * e2; }
+};
+
+/// Columns of a row.
+struct Span {
+  double first, last;
+  /// Keeps those where value + (x - at) slope >= -edge_margin. Of NaN nothing is known.
+  void keep(double value, double slope, double at) {
+    const double zero = at - (value + edge_margin) / slope;
+    if (slope > 0) first = std::max(first, std::ceil(zero));
+    if (slope < 0) last = std::min(last, std::floor(zero));
+    if (slope == 0 && value < -edge_margin) last = first - 1;
+  }
+};
+
+/// Writes n texels' points, on a line from `from` to `to`.
+void write_line(TilePoints& out, const Vec3& from, const Vec3& to, size_t n) {
+  const double scale = n > 1 ? 1 / double(n - 1) : 0;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    float* at = &out.point[axis][out.count];
+    const double start = from[axis], step = scale * (to[axis] - from[axis]);
+    for (int i = 0; i < static_cast<int>(n); ++i) at[i] = float(start + i * step);
+  }
+}
+
 /// One tile's texels while they are being found.
 class TileRaster {
  public:
@@ -87,7 +129,7 @@ class TileRaster {
     const int x = static_cast<int>(tile) % layout.tiles_across * tile_size;
     const int y = static_cast<int>(tile) / layout.tiles_across * tile_size;
     box_.limit({x, y, x + tile_size - 1, y + tile_size - 1});
-    on_face_.fill(false);
+    on_triangle_.fill(nothing);
     nearest_.fill(nothing);
   }
 
@@ -107,7 +149,7 @@ class TileRaster {
     for (int y = box.y0; y <= box.y1; ++y)
       for (int x = box.x0; x <= box.x1; ++x) {
         const size_t i = local(x, y);
-        if (on_face_[i]) continue;
+        if (on_triangle_[i] != nothing) continue;
         const Vec2 from = offset(border, x, y, along(border, x, y));
         const double squared = from[0] * from[0] + from[1] * from[1];
         if (squared > reach || (nearest_[i] != nothing && squared >= distance_[i])) continue;
@@ -123,49 +165,65 @@ class TileRaster {
     out.height = box_.y1 - box_.y0 + 1;
     out.count = 0;
     for (int y = box_.y0; y <= box_.y1; ++y)
-      for (int x = box_.x0; x <= box_.x1; ++x) {
+      for (int x = box_.x0; x <= box_.x1;) {
         const size_t i = local(x, y);
-        if (!on_face_[i] && nearest_[i] == nothing) continue;
-        if (!on_face_[i]) continue_surface(i, x, y);
-        out.texel[out.count] = static_cast<uint16_t>(i);
-        for (size_t axis = 0; axis < 3; ++axis) {
-          out.point[axis][out.count] = point_[i][axis];
-          out.normal[axis][out.count] = normal_[i][axis];
+        if (on_triangle_[i] != nothing) {
+          x += collect_run(out, x, y);
+        } else if (nearest_[i] != nothing) {
+          continue_surface(out, x++, y);
+        } else {
+          ++x;
         }
-        out.limit[out.count++] = limit_[i];
       }
   }
 
  private:
-  using Floats = std::array<float, 3>;
-  static constexpr uint32_t nothing = UINT32_MAX;
-
-  static Floats floats(const Vec3& a) { return {float(a[0]), float(a[1]), float(a[2])}; }
-
   size_t local(int x, int y) const { return size_t(y - box_.y0) * tile_size + size_t(x - box_.x0); }
 
   void add_triangle(const std::array<Vec2, 3>& t, const std::array<Vec3, 3>& p, double limit) {
-    const Vec2 s{t[1][0] - t[0][0], t[1][1] - t[0][1]}, r{t[2][0] - t[0][0], t[2][1] - t[0][1]};
-    const double determinant = s[0] * r[1] - s[1] * r[0];
-    if (determinant == 0) return;
+    Triangle made;
+    made.t = t[0];
+    made.s = {t[1][0] - t[0][0], t[1][1] - t[0][1]};
+    made.r = {t[2][0] - t[0][0], t[2][1] - t[0][1]};
+    made.inverse = 1 / (made.s[0] * made.r[1] - made.s[1] * made.r[0]);
+    if (!std::isfinite(made.inverse)) return;
+    made.p = p[0];
+    made.e1 = p[1] - p[0];
+    made.e2 = p[2] - p[0];
+    made.normal = floats(unit_or_zero(cross(made.e1, made.e2)));
+    made.limit = float(limit);
+    const uint32_t number = static_cast<uint32_t>(triangles_.size());
+    triangles_.push_back(made);
     const TexelBox box = texels_around(t, edge_margin, box_);
-    const Vec3 e1 = p[1] - p[0], e2 = p[2] - p[0];
-    const Floats normal = floats(unit_or_zero(cross(e1, e2)));
-    const double inverse = 1 / determinant;
+    const double by_b = made.r[1] * made.inverse, by_c = -made.s[1] * made.inverse;
     for (int y = box.y0; y <= box.y1; ++y) {
-      const double dy = y - t[0][1];
-      for (int x = box.x0; x <= box.x1; ++x) {
-        const double dx = x - t[0][0];
-        const double b = (dx * r[1] - dy * r[0]) * inverse, c = (s[0] * dy - s[1] * dx) * inverse;
-        if (b < -edge_margin || c < -edge_margin || b + c > 1 + edge_margin) continue;
-        const size_t i = local(x, y);
-        if (on_face_[i]) continue;
-        on_face_[i] = true;
-        point_[i] = floats(p[0] + b * e1 + c * e2);
-        normal_[i] = normal;
-        limit_[i] = float(limit);
-      }
+      Span span{double(box.x0), double(box.x1)};
+      const double b = made.b(box.x0, y), c = made.c(box.x0, y);
+      span.keep(b, by_b, box.x0);
+      span.keep(c, by_c, box.x0);
+      span.keep(1 - b - c, -by_b - by_c, box.x0);
+      if (!(span.first <= span.last)) continue;
+      uint32_t* row = &on_triangle_[local(box_.x0, y)];
+      const int last = static_cast<int>(span.last) - box_.x0;
+      for (int i = static_cast<int>(span.first) - box_.x0; i <= last; ++i)
+        if (row[i] == nothing) row[i] = number;
     }
+  }
+
+  /// Writes the texels from (x, y) on that lie on the same triangle; how many they are.
+  int collect_run(TilePoints& out, int x, int y) {
+    const size_t first = local(x, y), end = local(box_.x1, y) + 1;
+    size_t last = first;
+    while (last + 1 < end && on_triangle_[last + 1] == on_triangle_[first]) ++last;
+    const size_t n = last - first + 1;
+    const Triangle& on = triangles_[on_triangle_[first]];
+    write_line(out, on.point(x, y), on.point(x + double(n - 1), y), n);
+    for (size_t axis = 0; axis < 3; ++axis)
+      std::fill_n(&out.normal[axis][out.count], n, on.normal[axis]);
+    std::fill_n(&out.limit[out.count], n, on.limit);
+    for (size_t i = 0; i < n; ++i) out.texel[out.count + i] = static_cast<uint16_t>(first + i);
+    out.count += n;
+    return static_cast<int>(n);
   }
 
   /// Where on the border, in [0, 1], the point nearest to texel (x, y) lies.
@@ -180,7 +238,8 @@ class TileRaster {
             y - border.a[1] - t * (border.b[1] - border.a[1])};
   }
 
-  void continue_surface(size_t i, int x, int y) {
+  void continue_surface(TilePoints& out, int x, int y) const {
+    const size_t i = local(x, y);
     const Border& border = layout_.borders[nearest_[i]];
     const double t = along(border, x, y);
     const Vec2 d = offset(border, x, y, t);
@@ -188,22 +247,25 @@ class TileRaster {
     const Slopes &at_a = layout_.slopes[border.slopes[0]], &at_b = layout_.slopes[border.slopes[1]];
     const Vec3 by_x = mixed(at_a.by_x, at_b.by_x), by_y = mixed(at_a.by_y, at_b.by_y);
     const Vec3 beyond = d[0] * by_x + d[1] * by_y;
-    point_[i] =
-        floats(mixed(mesh_.vertices[border.vertex[0]], mesh_.vertices[border.vertex[1]]) + beyond);
-    normal_[i] = floats(unit_or_zero(cross(by_x, by_y)));
+    const Vec3 point =
+        mixed(mesh_.vertices[border.vertex[0]], mesh_.vertices[border.vertex[1]]) + beyond;
+    const Vec3 normal = unit_or_zero(cross(by_x, by_y));
+    for (size_t axis = 0; axis < 3; ++axis) {
+      out.point[axis][out.count] = float(point[axis]);
+      out.normal[axis][out.count] = float(normal[axis]);
+    }
     // Beyond a crease the zero set belongs to another face.
-    limit_[i] =
+    out.limit[out.count] =
         border.crease ? 0.0f : float(0.5 * (longest_edge(mesh_, border.face) + norm(beyond)));
+    out.texel[out.count++] = static_cast<uint16_t>(i);
   }
 
   const UvLayout& layout_;
   const Mesh& mesh_;
   TexelBox box_;
-  std::array<bool, tile_texels> on_face_;
-  std::array<uint32_t, tile_texels> nearest_;  // border
-  std::array<double, tile_texels> distance_;   // to it, squared
-  std::array<Floats, tile_texels> point_, normal_;
-  std::array<float, tile_texels> limit_;
+  std::vector<Triangle> triangles_;
+  Numbers on_triangle_, nearest_;             // index of the triangle; of the border
+  std::array<double, tile_texels> distance_;  // to it, squared
 };
 
 }  // namespace

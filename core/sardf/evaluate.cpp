@@ -54,17 +54,35 @@ void load(const Tape& tape, const T* const* xyz, size_t n, T* registers) {
   }
 }
 
+// Where each register lies. In a full block the results of operations that are outputs are written
+// to the caller's arrays; the others are copied at the end.
+template <class T>
+T* const* place_registers(const Tape& tape, T* registers, size_t n, T* const* out) {
+  thread_local Scratch<T*> places;
+  T** at = places.get(tape.registers());
+  for (size_t r = 0; r < tape.registers(); ++r) at[r] = registers + r * block_size;
+  if (n != padded<T>(n)) return at;
+  const size_t first_result = 3 + tape.constants().size();
+  for (size_t k = 0; k < tape.outputs().size(); ++k) {
+    const uint32_t r = tape.outputs()[k];
+    if (r >= first_result) at[r] = out[k];
+  }
+  return at;
+}
+
 template <class T>
 void evaluate_block(const Tape& tape, const T* const* xyz, size_t n, T* const* out) {
   T* registers = scratch<T>(tape.registers() * block_size);
   load(tape, xyz, n, registers);
+  T* const* at = place_registers(tape, registers, n, out);
   for (const Instruction& i : tape.instructions()) {
     std::array<const T*, max_arity> in;
-    for (size_t k = 0; k < in.size(); ++k) in[k] = registers + i.in[k] * block_size;
-    run(i, in.data(), registers + i.out * block_size, padded<T>(n));
+    for (size_t k = 0; k < in.size(); ++k) in[k] = at[i.in[k]];
+    run(i, in.data(), at[i.out], padded<T>(n));
   }
   for (size_t k = 0; k < tape.outputs().size(); ++k) {
-    std::copy_n(registers + tape.outputs()[k] * block_size, n, out[k]);
+    const T* result = at[tape.outputs()[k]];
+    if (result != out[k]) std::copy_n(result, n, out[k]);
   }
 }
 

@@ -4,6 +4,7 @@
 // per point, and results do not depend on the number of threads.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -24,10 +25,12 @@ struct BoundingBox {
 template <class T>
 class Scratch {
  public:
-  /// Room for n values.
+  /// Room for n values. It begins at a cache line: lanes that lie across two cost twice.
   T* get(size_t n) {
-    if (storage_.size() < n) storage_.resize(n);
-    return storage_.data();
+    constexpr size_t line = 64, more = line / sizeof(T);
+    if (storage_.size() < n + more) storage_.resize(n + more);
+    const size_t beyond = reinterpret_cast<uintptr_t>(storage_.data()) % line;
+    return storage_.data() + (beyond == 0 ? 0 : (line - beyond) / sizeof(T));
   }
 
  private:

@@ -5,6 +5,7 @@
 
 #include "sardf/arithmetic.hpp"
 #include "sardf/error.hpp"
+#include "sardf/inverse_shares.hpp"
 #include "sardf/short_number.hpp"
 
 namespace sardf {
@@ -209,8 +210,30 @@ std::vector<Expression> OfMaterials::values(const Lowering& lowering) const {
   return {total};
 }
 
+namespace {
+
+// The shares of features without influences and with one exponent that inverse_shares takes; empty
+// for others.
+std::vector<Expression> plain_shares(const std::vector<InverseDistance::Feature>& features,
+                                     double least) {
+  std::vector<Expression> distances;
+  for (const auto& feature : features) {
+    if (feature.influence.field || feature.exponent != features[0].exponent) return {};
+    distances.push_back(feature_distance(feature.at.field));
+  }
+  return inverse_shares(distances, features[0].exponent, least);
+}
+
+}  // namespace
+
 std::vector<WeightedPart> InverseDistance::parts(double diagonal) const {
   if (features.size() == 1) return {{constant(1), features[0].fractions}};
+  const std::vector<Expression> shares = plain_shares(features, on_feature * diagonal);
+  if (!shares.empty()) {
+    std::vector<WeightedPart> all;
+    for (size_t i = 0; i < features.size(); ++i) all.push_back({shares[i], features[i].fractions});
+    return all;
+  }
   const Expression least = constant(on_feature * diagonal);
   std::vector<Expression> exponents, on;
   for (const Feature& feature : features) {

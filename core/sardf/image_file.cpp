@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <span>
 #include <system_error>
 #include <utility>
 
@@ -113,7 +114,7 @@ OIIO::ImageSpec file_spec(const ImageLayout& layout) {
 }
 
 // Linear samples to what a PNG stores: colour freed from alpha, then sRGB.
-void encode_pixels(std::vector<float>& samples, size_t channels) {
+void encode_pixels(std::span<float> samples, size_t channels) {
   const bool has_alpha = channels == 2 || channels == 4;
   const size_t colors = has_alpha ? channels - 1 : channels;
   for (size_t i = 0; i < samples.size(); i += channels) {

@@ -5,14 +5,19 @@
 #include <string>
 #include <vector>
 
+#include "sardf/zeroed_memory.hpp"
+
 namespace sardf {
+
+/// They begin as zeros.
+using ImageSamples = std::vector<float, ZeroedMemory<float>>;
 
 /// Interleaved float samples, row 0 at the top.
 struct Image {
   int width = 0;
   int height = 0;
   int channels = 0;
-  std::vector<float> samples;  // width * height * channels
+  ImageSamples samples;  // width * height * channels
   float* at(int x, int y) { return &samples[(size_t(y) * width + x) * channels]; }
   const float* at(int x, int y) const { return &samples[(size_t(y) * width + x) * channels]; }
 };

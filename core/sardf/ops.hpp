@@ -13,10 +13,11 @@
 #include "sardf/ops_quadric.hpp"
 #include "sardf/ops_sardf.hpp"
 #include "sardf/ops_solids.hpp"
+#include "sardf/ops_weights.hpp"
 
 namespace sardf {
 
 using Ops = Joined<SolidOps, ConeOps, EllipsoidOps, QuadricOps, PlaneOps, FeatureOps, HelixOps,
-                   BlendOps, DomainOps, ArithmeticOps, FunctionOps>::type;
+                   BlendOps, DomainOps, ArithmeticOps, FunctionOps, WeightOps>::type;
 
 }  // namespace sardf

@@ -10,6 +10,7 @@
 #include "sardf/constructor.hpp"
 #include "sardf/error.hpp"
 #include "sardf/field_parts.hpp"
+#include "sardf/inverse_shares.hpp"
 #include "sardf/shapes_combine.hpp"
 #include "sardf/short_number.hpp"
 #include "sardf/unit_vectors.hpp"
@@ -296,12 +297,9 @@ Expression averaged(const Scene& scene, Property property) {
   if (std::all_of(materials.begin(), materials.end(), is_same)) {
     return constant(property(materials[0]));
   }
-  Expression total = constant(0);
-  for (size_t i = 0; i < materials.size(); ++i) {
-    const double value = property(materials[i]);
-    if (value != 0) total = total + scene.fractions()[i] * constant(value);
-  }
-  return total;
+  std::vector<double> factors;
+  for (const Material& m : materials) factors.push_back(property(m));
+  return weighted_sum(scene.fractions(), factors);
 }
 
 }  // namespace

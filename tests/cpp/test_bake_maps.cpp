@@ -219,7 +219,7 @@ TEST(BakeValues, DoNotDependOnThreadsOrOnMemory) {
       {"field", {f}}};
   const auto made = [&](size_t threads, size_t memory) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    std::vector<std::vector<float>> images;
+    std::vector<ImageSamples> images;
     std::vector<size_t> order;
     bake(
         texels, f, channels,
@@ -275,7 +275,7 @@ TEST(BakeValues, ProgressRisesAndCancelStopsWithinATenthOfASecond) {
 TEST(BakeFill, MeanOfTheCovered) {
   Image image{2, 2, 2, {1, 10, 3, 30, 0, 0, 0, 0}};
   fill_with_mean(image, {1, 1, 0, 0});
-  EXPECT_EQ(image.samples, (std::vector<float>{1, 10, 3, 30, 2, 20, 2, 20}));
+  EXPECT_EQ(image.samples, (ImageSamples{1, 10, 3, 30, 2, 20, 2, 20}));
   EXPECT_THAT(error_of([&] {
                 fill_with_mean(image, {0, 0, 0, 0});
               }),

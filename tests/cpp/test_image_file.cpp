@@ -298,7 +298,7 @@ TEST(FillUncovered, KeepsTheCoveredAndStaysWithinTheirRange) {
 TEST(FillUncovered, FillsAHoleFromAroundIt) {
   // Left half 0.2, right half 0.8, the right half's middle missing: it becomes 0.8.
   for (const int size : {64, 4096}) {
-    Image image{size, 64, 1, std::vector<float>(size_t(size) * 64)};
+    Image image{size, 64, 1, ImageSamples(size_t(size) * 64)};
     std::vector<unsigned char> covered(size_t(size) * 64, 1);
     for (int y = 0; y < 64; ++y)
       for (int x = 0; x < size; ++x) *image.at(x, y) = x < size / 2 ? 0.2f : 0.8f;

@@ -6,11 +6,13 @@
 
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
 
+#include "sardf/numbers/exponentials.hpp"
 #include "sardf/numbers/real.hpp"
 
 namespace sardf {
@@ -199,13 +201,15 @@ struct Lanes {
   friend Lanes freeze(Lanes a) { return a; }
   friend Lanes cosine(Lanes a, Lanes b) { return a / b; }
 
-  // The C library's scalar functions: the same result for every instruction set.
   friend Lanes exp(Lanes a) {
+    if constexpr (std::is_same_v<Number, float>) return exp_of_floats(a);
     return each(a, [](Number s) { return std::exp(s); });
   }
   friend Lanes log(Lanes a) {
+    if constexpr (std::is_same_v<Number, float>) return log_of_floats(a);
     return each(a, [](Number s) { return std::log(s); });
   }
+  // The C library's scalar functions: the same result for every instruction set.
   friend Lanes sin(Lanes a) {
     return each(a, [](Number s) { return std::sin(s); });
   }

@@ -1,0 +1,48 @@
+// Memory for large arrays whose elements begin as zeros without being written.
+#pragma once
+
+#include <cstdlib>
+#include <new>
+#include <utility>
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
+namespace sardf {
+
+/// An allocator for std::vector: elements that are made without a value are 0, since they lie in
+/// memory that the system hands out as zeros. Pages come into being where they are first touched,
+/// by the threads that work there. Not for vectors that shrink and grow again within their
+/// capacity: then what was there before is back.
+template <class T>
+struct ZeroedMemory {
+  using value_type = T;
+  ZeroedMemory() = default;
+  template <class U>
+  explicit ZeroedMemory(const ZeroedMemory<U>&) {}
+
+  T* allocate(size_t n) {
+    void* memory = std::calloc(n, sizeof(T));
+    if (!memory) throw std::bad_alloc();
+#if defined(__linux__)
+    // Large pages where a large array has whole ones; it is no loss where the system refuses.
+    constexpr size_t page = size_t(2) << 20;
+    const size_t begin = (reinterpret_cast<size_t>(memory) + page - 1) / page * page;
+    const size_t end = (reinterpret_cast<size_t>(memory) + n * sizeof(T)) / page * page;
+    if (begin < end) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+#endif
+    return static_cast<T*>(memory);
+  }
+  void deallocate(T* memory, size_t) { std::free(memory); }
+
+  template <class U>
+  void construct(U*) {}
+  template <class U, class... Arguments>
+  void construct(U* at, Arguments&&... arguments) {
+    ::new (static_cast<void*>(at)) U(std::forward<Arguments>(arguments)...);
+  }
+  friend bool operator==(const ZeroedMemory&, const ZeroedMemory&) { return true; }
+};
+
+}  // namespace sardf

@@ -7,7 +7,7 @@ setup_failed() {
 }
 
 begin_checks() {
-  rm -f "$logs"/googletest_*.xml "$logs"/pytest.xml
+  rm -f "$logs"/googletest_*.xml "$logs"/pytest*.xml
   : >"$checks"
 }
 
@@ -37,6 +37,16 @@ both_halves() {
   return $status
 }
 
+# The Python tests: files of them on both cores, then those that measure seconds. Reports are
+# build/logs/pytest_{0,1}.xml.
+all_pytest() {
+  local status=0
+  .venv/bin/python -m pytest -m "not long and not timed" -n 2 --dist loadfile \
+    --junitxml="$logs/pytest_0.xml" || status=1
+  .venv/bin/python -m pytest -m "timed and not long" --junitxml="$logs/pytest_1.xml" || status=1
+  return $status
+}
+
 build_preset() {
   local preset=$1
   shift
@@ -48,9 +58,9 @@ check_cpp_format() {
     xargs -0 clang-format-16 --dry-run -Werror
 }
 
-# Prints failures, skips with their reasons, and the closing line; exits with 1 if anything failed.
+# end_checks REPORT...: prints failures, skips with their reasons, and the closing line; exits with 1
+# if anything failed.
 end_checks() {
-  .venv/bin/python scripts/count_tests.py "$checks" \
-    "$logs"/googletest_{0,1}.xml "$logs/pytest.xml"
+  .venv/bin/python scripts/count_tests.py "$checks" "${@/#/$logs/}"
   exit
 }

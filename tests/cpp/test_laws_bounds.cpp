@@ -102,7 +102,11 @@ TEST(BoundLaws, SlopesHoldGradients) {
       double sum = 0;
       for (size_t k = 0; k < by.size(); ++k) {
         sum += std::abs(by[k]);
-        gradient = gradient + by[k] * input_gradients[k];
+        // A slope may be infinite, and 0 of it is 0.
+        for (size_t axis = 0; axis < 3; ++axis) {
+          const double share = input_gradients[k][axis];
+          if (share != 0) gradient[axis] += by[k] * share;
+        }
       }
       for (size_t axis = 0; axis < 3; ++axis) {
         const Interval bound = slope.partial[axis];

@@ -31,8 +31,8 @@ const Scene& scene() {
 /// The bytes of results, one after the other.
 class Bytes {
  public:
-  template <class T>
-  void add(const std::vector<T>& data) {
+  template <class T, class Memory>
+  void add(const std::vector<T, Memory>& data) {
     static_assert(std::is_trivially_copyable_v<T>);
     const char* first = reinterpret_cast<const char*>(data.data());
     all_.insert(all_.end(), first, first + data.size() * sizeof(T));

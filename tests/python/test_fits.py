@@ -61,6 +61,7 @@ def makers(tmp_path):
 WAYS = ["fitted", "load", "from_json"]
 
 
+@pytest.mark.timed
 @pytest.mark.parametrize("way", WAYS)
 def test_progress_rises_and_cancels(tmp_path, way):
     make, shares = makers(tmp_path)[way], []
@@ -102,6 +103,7 @@ def test_an_error_in_the_progress_is_raised(tmp_path, way):
         makers(tmp_path)[way](lambda share: 1 / 0)
 
 
+@pytest.mark.timed
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("reports", [True, False])
 def test_ctrl_c_stops_a_fit_at_once(tmp_path, way, reports):
@@ -127,6 +129,7 @@ def test_ctrl_c_stops_a_fit_at_once(tmp_path, way, reports):
     assert stopped - sent[0] < 0.1
 
 
+@pytest.mark.timed
 def test_ctrl_c_stops_a_mesh_at_once():
     scene, sent = sardf.Scene(solid=sardf.sphere(radius=1)), []
 
@@ -140,6 +143,7 @@ def test_ctrl_c_stops_a_mesh_at_once():
     assert time.perf_counter() - sent[0] < 0.2
 
 
+@pytest.mark.timed
 @pytest.mark.parametrize("way", WAYS)
 def test_other_threads_run_while_a_fit_is_solved(tmp_path, way):
     ticks, done = [], threading.Event()

@@ -18,6 +18,7 @@ def setup(**environment: str) -> subprocess.CompletedProcess:
     )  # fmt: skip
 
 
+@pytest.mark.timed
 def test_second_setup_is_quick_and_does_nothing():
     begun = time.monotonic()
     done = setup()

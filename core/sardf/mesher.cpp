@@ -90,15 +90,20 @@ bool is_in_cell(const Grid& grid, const Index3& cell, const Vec3& point) {
 // Vertices at the same place in single precision, or nearly so in the same cell, one of which must
 // lie out of its cell or share it.
 std::vector<uint32_t> touching_vertices(const Grid& grid, const Cells& cells, const Net& net,
-                                        const Vertices& vertices) {
+                                        const Vertices& vertices, Work& work) {
   const auto rounded = [&](uint32_t v) {
     const Vec3& p = vertices.at[v];
     return std::array<float, 3>{float(p[0]), float(p[1]), float(p[2])};
   };
   std::map<std::array<float, 3>, int> places;
-  std::vector<uint8_t> touching(net.vertex_count());
+  std::vector<uint8_t> touching(net.vertex_count()), out(net.vertex_count());
+  work.run(net.vertex_count(), 4096, [&](size_t first, size_t last) {
+    for (size_t v = first; v < last; ++v) {
+      out[v] = !is_in_cell(grid, cells.at[net.cell[v]], vertices.at[v]);
+    }
+  });
   for (uint32_t v = 0; v < net.vertex_count(); ++v) {
-    if (!is_in_cell(grid, cells.at[net.cell[v]], vertices.at[v])) places[rounded(v)] = 0;
+    if (out[v]) places[rounded(v)] = 0;
     for (uint32_t w = v; w > 0 && net.cell[w - 1] == net.cell[v]; --w) {
       if (norm(vertices.at[v] - vertices.at[w - 1]) > 1e-4 * grid.cell) continue;
       touching[v] = touching[w - 1] = 1;
@@ -121,8 +126,8 @@ std::vector<uint32_t> touching_vertices(const Grid& grid, const Cells& cells, co
 // Pieces of surface that touch stay apart: programs that merge equal points would join them. Each
 // vertex goes a little towards the middle of its own crossings.
 void separate(const Grid& grid, const Cells& cells, const Net& net, const CrossingPoints& crossings,
-              Vertices& vertices) {
-  for (const uint32_t v : touching_vertices(grid, cells, net, vertices)) {
+              Vertices& vertices, Work& work) {
+  for (const uint32_t v : touching_vertices(grid, cells, net, vertices, work)) {
     const Vec3 middle = middle_of_crossings(net, crossings, v);
     vertices.at[v] = vertices.at[v] + 2e-3 * (middle - vertices.at[v]);
   }
@@ -167,7 +172,7 @@ Mesh make_mesh(const Evaluator& solid, const BoundingBox& bounds, const MeshOpti
   Vertices vertices = place_vertices(field, grid, net, crossings, work);
   work.stage(0.97);
   place_features(field, grid, net, crossings, vertices, work);
-  separate(grid, cells, net, crossings, vertices);
+  separate(grid, cells, net, crossings, vertices, work);
   work.stage(1);
   Mesh mesh;
   mesh.corner_normals = find_normals(field, grid, net, crossings, vertices, work);
@@ -175,7 +180,7 @@ Mesh make_mesh(const Evaluator& solid, const BoundingBox& bounds, const MeshOpti
   mesh.vertices = std::move(vertices.at);
   mesh.faces = std::move(net.faces);
   fill_normals(mesh);
-  choose_diagonals(mesh);
+  choose_diagonals(mesh, work);
   return mesh;
 }
 

@@ -1,5 +1,6 @@
 // Samples the blocks and lists the cells with surface and the grid edges that it crosses.
 #include <algorithm>
+#include <bit>
 
 #include "sardf/mesher_blocks.hpp"
 
@@ -23,18 +24,25 @@ struct Sampled {
 };
 
 template <class T>
-void evaluate_samples(const Field& field, const Grid& grid, const Index3& first, float* values) {
-  Points<T> points;
-  for (int begin = 0; begin < samples; begin += int(points.capacity)) {
-    const int count = std::min(samples - begin, int(points.capacity));
-    for (int i = 0; i < count; ++i) {
-      const int s = begin + i;
-      points.xyz[0][i] = T(grid.coordinate(0, first[0] + s % side));
-      points.xyz[1][i] = T(grid.coordinate(1, first[1] + s / side % side));
-      points.xyz[2][i] = T(grid.coordinate(2, first[2] + s / (side * side)));
+void evaluate_samples(const Field& field, const Grid& grid, const Index3& block, float* values) {
+  std::array<std::array<T, side>, 3> at;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int i = 0; i < side; ++i) {
+      at[axis][i] = T(grid.coordinate(axis, block[axis] * block_cells + i));
     }
-    field.evaluate(points, size_t(count));
-    for (int i = 0; i < count; ++i) values[begin + i] = float(points.value[i]);
+  }
+  const Evaluator& program = field.program(block, block_level);
+  constexpr int rows_at_once = int(Points<T>::capacity) / side;
+  Points<T> points;
+  for (int row = 0; row < side * side; row += rows_at_once) {
+    const int rows = std::min(side * side - row, rows_at_once), count = rows * side;
+    for (int r = 0; r < rows; ++r) {
+      std::copy_n(at[0].data(), side, points.xyz[0] + side * r);
+      std::fill_n(points.xyz[1] + side * r, side, at[1][(row + r) % side]);
+      std::fill_n(points.xyz[2] + side * r, side, at[2][(row + r) / side]);
+    }
+    field.evaluate(program, points, size_t(count));
+    for (int i = 0; i < count; ++i) values[side * row + i] = float(points.value[i]);
   }
 }
 
@@ -64,6 +72,8 @@ uint8_t joined_faces(uint8_t inside, const std::array<float, 8>& corner) {
 // The blocks that share the crossed edges of the cell at `local` in its block.
 void add_neighbours(const Index3& block, const std::array<int, 3>& local, uint8_t inside,
                     std::vector<Index3>& to) {
+  const auto is_inner = [](int i) { return i > 0 && i < block_cells - 1; };
+  if (is_inner(local[0]) && is_inner(local[1]) && is_inner(local[2])) return;
   for (int edge = 0; edge < 12; ++edge) {
     const int d = edge / 4, e = (d + 1) % 3, g = (d + 2) % 3;
     const int at_e = edge & 1, at_g = edge >> 1 & 1;
@@ -89,31 +99,64 @@ void add_crossings(const Index3& at, uint8_t inside, const std::array<float, 8>&
   }
 }
 
+// The signs of a block's samples, a row along x in each number: bit x is set inside.
+class Signs {
+ public:
+  explicit Signs(const std::array<float, samples>& values) {
+    for (int i = 0; i < samples; ++i) rows_[i / side] |= uint16_t((values[i] >= 0) << i % side);
+  }
+
+  /// Bit x: cell x of the row of cells has corners on both sides.
+  int mixed(int y, int z) const {
+    const int any = row(y, z) | row(y + 1, z) | row(y, z + 1) | row(y + 1, z + 1);
+    const int all = row(y, z) & row(y + 1, z) & row(y, z + 1) & row(y + 1, z + 1);
+    return (any | any >> 1) & ~(all & all >> 1) & ((1 << block_cells) - 1);
+  }
+  /// Bit c: corner c of the cell is inside.
+  uint8_t inside(int x, int y, int z) const {
+    const auto pair = [&](int dy, int dz) { return row(y + dy, z + dz) >> x & 3; };
+    return uint8_t(pair(0, 0) | pair(1, 0) << 2 | pair(0, 1) << 4 | pair(1, 1) << 6);
+  }
+
+ private:
+  int row(int y, int z) const { return rows_[y + side * z]; }
+
+  std::array<uint16_t, side * side> rows_{};
+};
+
 Sampled sample(const Field& field, const Grid& grid, const Index3& block) {
   std::array<float, samples> values;
   const Index3 first{block[0] * block_cells, block[1] * block_cells, block[2] * block_cells};
   if (grid.single) {
-    evaluate_samples<float>(field, grid, first, values.data());
+    evaluate_samples<float>(field, grid, block, values.data());
   } else {
-    evaluate_samples<double>(field, grid, first, values.data());
+    evaluate_samples<double>(field, grid, block, values.data());
   }
   Sampled result;
   result.block = block;
-  std::array<uint8_t, samples> sign;
-  for (int i = 0; i < samples; ++i) sign[i] = values[i] >= 0;
+  const Signs signs(values);
+  size_t count = 0;
   for (int z = 0; z < block_cells; ++z) {
     for (int y = 0; y < block_cells; ++y) {
-      for (int x = 0; x < block_cells; ++x) {
-        uint8_t inside = 0;
-        const auto index = [&](int c) {
-          return sample_index(x + (c & 1), y + (c >> 1 & 1), z + (c >> 2));
-        };
-        for (int c = 0; c < 8; ++c) inside |= uint8_t(sign[index(c)] << c);
-        if (inside == 0 || inside == 255) continue;
+      result.occupied.occupied[z] |= uint64_t(signs.mixed(y, z)) << 8 * y;
+    }
+    count += size_t(std::popcount(result.occupied.occupied[z]));
+  }
+  if (count == 0) return result;
+  result.at.reserve(count);
+  result.inside.reserve(count);
+  result.joined.reserve(count);
+  result.crossings.reserve(count + count / 2);
+  for (int z = 0; z < block_cells; ++z) {
+    for (int y = 0; y < block_cells; ++y) {
+      for (int row = signs.mixed(y, z); row != 0; row &= row - 1) {
+        const int x = std::countr_zero(unsigned(row));
+        const uint8_t inside = signs.inside(x, y, z);
         std::array<float, 8> corner;
-        for (int c = 0; c < 8; ++c) corner[c] = values[index(c)];
+        for (int c = 0; c < 8; ++c) {
+          corner[c] = values[sample_index(x + (c & 1), y + (c >> 1 & 1), z + (c >> 2))];
+        }
         const Index3 at{first[0] + x, first[1] + y, first[2] + z};
-        result.occupied.occupied[z] |= uint64_t(1) << (x + 8 * y);
         result.at.push_back(at);
         result.inside.push_back(inside);
         result.joined.push_back(joined_faces(inside, corner));
@@ -129,13 +172,28 @@ Sampled sample(const Field& field, const Grid& grid, const Index3& block) {
   return result;
 }
 
+void reserve_for(const std::vector<Sampled>& parts, Cells& cells) {
+  size_t count = cells.at.size(), crossings = cells.crossings.size(), blocks = cells.blocks.size();
+  for (const Sampled& part : parts) {
+    count += part.at.size();
+    crossings += part.crossings.size();
+    blocks += !part.at.empty();
+  }
+  cells.at.reserve(count);
+  cells.inside.reserve(count);
+  cells.joined.reserve(count);
+  cells.crossings.reserve(crossings);
+  cells.blocks.reserve(blocks);
+  cells.block_at.reserve(blocks);
+}
+
 void append(Sampled& part, Cells& cells) {
   if (part.at.empty()) return;
   cells.block_at[key(part.block)] = uint32_t(cells.blocks.size());
   uint32_t number = uint32_t(cells.at.size());
   for (int z = 0; z < block_cells; ++z) {
     part.occupied.first[z] = number;
-    number += uint32_t(__builtin_popcountll(part.occupied.occupied[z]));
+    number += uint32_t(std::popcount(part.occupied.occupied[z]));
   }
   cells.blocks.push_back(part.occupied);
   const auto add = [](auto& from, auto& to) { to.insert(to.end(), from.begin(), from.end()); };
@@ -148,17 +206,19 @@ void append(Sampled& part, Cells& cells) {
 
 }  // namespace
 
-uint32_t Cells::find(const Index3& cell) const {
-  const auto found =
-      block_at.find(key({cell[0] / block_cells, cell[1] / block_cells, cell[2] / block_cells}));
-  if (found == block_at.end()) return none;
-  const Block& block = blocks[found->second];
-  const int layer = cell[2] % block_cells;
-  const int bit = cell[0] % block_cells + 8 * (cell[1] % block_cells);
-  const uint64_t occupied = block.occupied[layer];
+uint32_t CellFinder::operator()(const Index3& cell) {
+  static_assert(block_cells == 8);
+  const Index3 place{cell[0] >> 3, cell[1] >> 3, cell[2] >> 3};
+  if (place != place_) {
+    const auto found = cells_.block_at.find(key(place));
+    block_ = found == cells_.block_at.end() ? nullptr : &cells_.blocks[found->second];
+    place_ = place;
+  }
+  if (!block_) return none;
+  const int layer = cell[2] & 7, bit = (cell[0] & 7) + 8 * (cell[1] & 7);
+  const uint64_t occupied = block_->occupied[layer];
   if (!(occupied >> bit & 1)) return none;
-  const uint64_t before = occupied & ((uint64_t(1) << bit) - 1);
-  return block.first[layer] + uint32_t(__builtin_popcountll(before));
+  return block_->first[layer] + uint32_t(std::popcount(occupied & ((uint64_t(1) << bit) - 1)));
 }
 
 Cells find_cells(Field& field, const Grid& grid, size_t memory_limit, Work& work) {
@@ -173,6 +233,7 @@ Cells find_cells(Field& field, const Grid& grid, size_t memory_limit, Work& work
     work.run(blocks.size(), 4, [&](size_t first, size_t last) {
       for (size_t i = first; i < last; ++i) parts[i] = sample(field, grid, blocks[i]);
     });
+    reserve_for(parts, cells);
     std::vector<Index3> missing;
     for (Sampled& part : parts) {
       for (const Index3& next : part.neighbours) {

@@ -1,7 +1,6 @@
 #include "sardf/mesher_field.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <limits>
 
 namespace sardf::mesher {
@@ -37,10 +36,12 @@ bool contains(const BoundingBox& box, const Vec3& p) {
 
 template <class T>
 void copy_point(const Points<T>& from, size_t i, Points<T>& to, size_t k) {
-  for (int axis = 0; axis < 3; ++axis) {
-    to.xyz[axis][k] = from.xyz[axis][i];
-    to.gradient[axis][k] = from.gradient[axis][i];
-  }
+  for (int axis = 0; axis < 3; ++axis) to.xyz[axis][k] = from.xyz[axis][i];
+}
+
+template <class T>
+void copy_result(const Points<T>& from, size_t i, Points<T>& to, size_t k) {
+  for (int axis = 0; axis < 3; ++axis) to.gradient[axis][k] = from.gradient[axis][i];
   to.value[k] = from.value[i];
 }
 
@@ -74,34 +75,42 @@ void Field::for_programs(Points<T>& points, size_t n, Run run) const {
   const Evaluator* found[Points<T>::capacity];
   if (!programs_ || n == 0) return run(solid_, points, n);
   if (find_programs(points, n, found)) return run(*found[0], points, n);
-  // Where one lies in the order does not matter to the result.
-  uint16_t order[Points<T>::capacity];
-  for (size_t i = 0; i < n; ++i) order[i] = uint16_t(i);
-  std::sort(order, order + n, [&](uint16_t a, uint16_t b) {
-    return std::less<>()(found[a], found[b]) || (found[a] == found[b] && a < b);
-  });
   Points<T> group;
-  for (size_t first = 0, last; first < n; first = last) {
-    const Evaluator* program = found[order[first]];
-    for (last = first; last < n && found[order[last]] == program; ++last) {
-      copy_point(points, order[last], group, last - first);
+  uint16_t member[Points<T>::capacity];
+  for (size_t begin = 0; begin < n; ++begin) {
+    const Evaluator* program = found[begin];
+    if (!program) continue;
+    size_t count = 0;
+    for (size_t i = begin; i < n; ++i) {
+      if (found[i] != program) continue;
+      found[i] = nullptr;
+      member[count] = uint16_t(i);
+      copy_point(points, i, group, count++);
     }
-    run(*program, group, last - first);
-    for (size_t i = first; i < last; ++i) copy_point(group, i - first, points, order[i]);
+    run(*program, group, count);
+    for (size_t i = 0; i < count; ++i) copy_result(group, i, points, member[i]);
   }
 }
 
 template <class T>
 void Field::evaluate(Points<T>& points, size_t n) const {
-  for_programs(points, n, [](const Evaluator& solid, Points<T>& at, size_t count) {
-    T* to = at.value;
-    solid.block(at.xyz[0], at.xyz[1], at.xyz[2], count, &to);
+  for_programs(points, n, [this](const Evaluator& program, Points<T>& at, size_t count) {
+    evaluate(program, at, count);
   });
+}
+
+template <class T>
+void Field::evaluate(const Evaluator& program, Points<T>& points, size_t n) const {
   T* out = points.value;
-  for (size_t i = 0; i < n; ++i) {
-    int face;
-    const T clip = clip_value(bounds_, points, i, face);
-    if (clip < out[i]) out[i] = clip;
+  program.block(points.xyz[0], points.xyz[1], points.xyz[2], n, &out);
+  for (int axis = 0; axis < 3; ++axis) {
+    const T lo = T(bounds_.lo[axis]), hi = T(bounds_.hi[axis]);
+    const T* at = points.xyz[axis];
+    for (size_t i = 0; i < n; ++i) {
+      const T below = at[i] - lo, above = hi - at[i];
+      const T clip = above < below ? above : below;
+      out[i] = clip < out[i] ? clip : out[i];
+    }
   }
 }
 
@@ -124,6 +133,8 @@ void Field::differentiate(Points<T>& points, size_t n) const {
 
 template void Field::evaluate(Points<float>&, size_t) const;
 template void Field::evaluate(Points<double>&, size_t) const;
+template void Field::evaluate(const Evaluator&, Points<float>&, size_t) const;
+template void Field::evaluate(const Evaluator&, Points<double>&, size_t) const;
 template void Field::differentiate(Points<float>&, size_t) const;
 template void Field::differentiate(Points<double>&, size_t) const;
 

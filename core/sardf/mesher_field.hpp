@@ -34,6 +34,9 @@ class Field {
   /// Values of the first n points. NaN counts as outside everywhere.
   template <class T>
   void evaluate(Points<T>& points, size_t n) const;
+  /// The same by a program that is good for all of them.
+  template <class T>
+  void evaluate(const Evaluator& program, Points<T>& points, size_t n) const;
   /// Values and gradients of the first n points.
   template <class T>
   void differentiate(Points<T>& points, size_t n) const;

@@ -99,12 +99,13 @@ bool meets_twice(const Pieces& pieces, int axis, int s) {
 }
 
 void settle_ambiguous_faces(Cells& cells) {
+  CellFinder find(cells);
   for (uint32_t i = 0; i < cells.at.size(); ++i) {
     for (int axis = 0; axis < 3; ++axis) {
       if (!is_ambiguous(cells.inside[i], axis, 1)) continue;
       Index3 next = cells.at[i];
       ++next[axis];
-      const uint32_t j = cells.find(next);
+      const uint32_t j = find(next);
       const uint8_t upper = uint8_t(2 << 2 * axis), lower = uint8_t(1 << 2 * axis);
       const bool joined = cells.joined[i] & upper;
       cells.joined[j] = uint8_t(joined ? cells.joined[j] | lower : cells.joined[j] & ~lower);
@@ -143,21 +144,30 @@ BoundingBox room_of(const Pieces& pieces, int piece, const Vec3& lo, double cell
 }
 
 void make_vertices(const Cells& cells, const Grid& grid, Net& net,
-                   std::vector<uint32_t>& first_vertex) {
+                   std::vector<uint32_t>& first_vertex, Work& work) {
   first_vertex.resize(cells.at.size());
-  for (uint32_t i = 0; i < cells.at.size(); ++i) {
-    first_vertex[i] = uint32_t(net.cell.size());
-    const Pieces pieces = pieces_of(cells.inside[i], cells.joined[i]);
-    const Vec3 lo = grid.point(cells.at[i]);
-    for (int piece = 0; piece < pieces.count; ++piece) {
-      net.cell.push_back(i);
-      net.room.push_back(room_of(pieces, piece, lo, grid.cell));
-    }
+  uint32_t count = 0;
+  for (size_t i = 0; i < cells.at.size(); ++i) {
+    first_vertex[i] = count;
+    count += uint32_t(pieces_of(cells.inside[i], cells.joined[i]).count);
   }
+  net.cell.resize(count);
+  net.room.resize(count);
+  work.run(cells.at.size(), 4096, [&](size_t first, size_t last) {
+    for (size_t i = first; i < last; ++i) {
+      const Pieces pieces = pieces_of(cells.inside[i], cells.joined[i]);
+      const Vec3 lo = grid.point(cells.at[i]);
+      for (int piece = 0; piece < pieces.count; ++piece) {
+        const size_t v = first_vertex[i] + size_t(piece);
+        net.cell[v] = uint32_t(i);
+        net.room[v] = room_of(pieces, piece, lo, grid.cell);
+      }
+    }
+  });
 }
 
 std::array<uint32_t, 4> make_face(const Cells& cells, const std::vector<uint32_t>& first_vertex,
-                                  const Crossing& crossing) {
+                                  const Crossing& crossing, CellFinder& find) {
   // Counter-clockwise seen from the end of the edge: sides of the edge in its four cells.
   constexpr int sides[4][2] = {{1, 1}, {0, 1}, {0, 0}, {1, 0}};
   const int axis = crossing.axis, e = (axis + 1) % 3, g = (axis + 2) % 3;
@@ -166,10 +176,10 @@ std::array<uint32_t, 4> make_face(const Cells& cells, const std::vector<uint32_t
     Index3 at = crossing.at;
     at[e] -= sides[k][0];
     at[g] -= sides[k][1];
-    const uint32_t cell = cells.find(at);
-    const Pieces pieces = pieces_of(cells.inside[cell], cells.joined[cell]);
+    const uint32_t cell = find(at);
     const int edge = edge_number(axis, sides[k][0], sides[k][1]);
-    face[crossing.leaves ? k : 3 - k] = first_vertex[cell] + uint32_t(pieces.of_edge[edge]);
+    const int8_t piece = pieces_of(cells.inside[cell], cells.joined[cell]).of_edge[edge];
+    face[crossing.leaves ? k : 3 - k] = first_vertex[cell] + uint32_t(piece);
   }
   return face;
 }
@@ -202,13 +212,14 @@ Net build_net(Cells& cells, const Grid& grid, Work& work) {
   settle_ambiguous_faces(cells);
   Net net;
   std::vector<uint32_t> first_vertex;
-  make_vertices(cells, grid, net, first_vertex);
+  make_vertices(cells, grid, net, first_vertex, work);
   net.faces.resize(cells.crossings.size());
   net.direction.resize(cells.crossings.size());
   work.run(net.faces.size(), 4096, [&](size_t first, size_t last) {
+    CellFinder find(cells);
     for (size_t i = first; i < last; ++i) {
       const Crossing& crossing = cells.crossings[i];
-      net.faces[i] = make_face(cells, first_vertex, crossing);
+      net.faces[i] = make_face(cells, first_vertex, crossing, find);
       net.direction[i] = int8_t(crossing.leaves ? crossing.axis + 1 : -crossing.axis - 1);
     }
   });

@@ -62,9 +62,11 @@ std::vector<Vec3> find_normals(const Field& field, const Grid& grid, const Net& 
                                const CrossingPoints& crossings, const Vertices& vertices,
                                Work& work) {
   std::vector<Vec3> result(net.uses.size());
-  for (uint32_t use = 0; use < result.size(); ++use) {
-    result[use] = vertices.normal[net.faces[use / 4][use % 4]];
-  }
+  work.run(net.faces.size(), 4096, [&](size_t first, size_t last) {
+    for (size_t face = first; face < last; ++face) {
+      for (size_t k = 0; k < 4; ++k) result[4 * face + k] = vertices.normal[net.faces[face][k]];
+    }
+  });
   const auto side = [&](uint32_t use) { return side_of(use / 4, net, crossings, vertices); };
   work.run(vertices.sharp.size(), 32, [&](size_t first, size_t last) {
     Samples samples(net, crossings, std::span(vertices.sharp).subspan(first, last - first));

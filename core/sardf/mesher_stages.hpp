@@ -47,16 +47,26 @@ struct Cells {
   std::vector<uint8_t> joined;
   std::vector<Crossing> crossings;
 
-  /// The number of a cell with surface; `none` for any other.
-  static constexpr uint32_t none = 0xFFFFFFFFu;
-  uint32_t find(const Index3& cell) const;
-
   struct Block {
     std::array<uint64_t, 8> occupied{};  // bit x + 8 y of layer z: a cell with surface
     std::array<uint32_t, 8> first{};     // number of the layer's first cell
   };
   std::vector<Block> blocks;
   std::unordered_map<uint64_t, uint32_t> block_at;
+};
+
+/// Finds cells by their place, those in one block after the other at once.
+class CellFinder {
+ public:
+  explicit CellFinder(const Cells& cells) : cells_(cells) {}
+  /// The number of a cell with surface; `none` for any other.
+  static constexpr uint32_t none = 0xFFFFFFFFu;
+  uint32_t operator()(const Index3& cell);
+
+ private:
+  const Cells& cells_;
+  Index3 place_{-1, -1, -1};             // of the last block
+  const Cells::Block* block_ = nullptr;  // null: there is none at that place
 };
 
 /// The pieces of surface in a cell: for each of the 12 edges the piece that crosses it, or -1.
@@ -123,6 +133,6 @@ std::vector<std::array<uint32_t, 2>> find_creases(const Net& net, const Vertices
                                                   const std::vector<Vec3>& corner_normals);
 /// Turns each quad so that the triangles that its first and third corner part agree better with the
 /// corner normals than those of the other diagonal.
-void choose_diagonals(Mesh& mesh);
+void choose_diagonals(Mesh& mesh, Work& work);
 
 }  // namespace sardf::mesher

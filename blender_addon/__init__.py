@@ -29,16 +29,20 @@ bl_info = {
 
 
 def register():
-    from . import operators, panel, properties
+    from . import operators, panel, part_objects, part_properties, properties
 
     properties.register()
+    part_properties.register()
+    part_objects.register()
     operators.register()
     panel.register()
 
 
 def unregister():
-    from . import operators, panel, properties
+    from . import operators, panel, part_objects, part_properties, properties
 
     panel.unregister()
     operators.unregister()
+    part_objects.unregister()
+    part_properties.unregister()
     properties.unregister()

@@ -3,6 +3,7 @@
 
 import hashlib
 import os
+import tempfile
 from pathlib import Path
 
 import bpy
@@ -19,14 +20,18 @@ def write(item, evaluated, matrix=None):
         data = _ply(item, mesh, matrix)
     finally:
         evaluated.to_mesh_clear()
-    folder = Path(bpy.app.tempdir or os.environ.get("TMPDIR", "/tmp")) / "sardf_meshes"
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / f"{hashlib.sha256(data).hexdigest()[:32]}.ply"
+    folder().mkdir(parents=True, exist_ok=True)
+    path = folder() / f"{hashlib.sha256(data).hexdigest()[:32]}.ply"
     if not path.is_file():
         unfinished = path.with_suffix(f".{os.getpid()}")
         unfinished.write_bytes(data)
         os.replace(unfinished, path)
     return str(path)
+
+
+def folder():
+    """Where the files lie: Blender removes it when it ends."""
+    return Path(bpy.app.tempdir or tempfile.gettempdir()) / "sardf_meshes"
 
 
 def _ply(item, mesh, matrix):

@@ -105,12 +105,8 @@ def parts(scene):
 
 def part_of(item):
     """The part that an object is, or is in, or None. A part inside a part is its own."""
-    if item is None or is_part(item):
-        return item
-    above = item.parent
-    while above is not None and not is_part(above):
-        above = above.parent
-    if above is not None:
+    above = part_above(item)
+    if item is None or above is not None:
         return above
     for part in bpy.data.objects:
         if part.sardf_part.is_part and any(e.object == item for e in part.sardf_part.entries):
@@ -118,10 +114,17 @@ def part_of(item):
     return None
 
 
+def part_above(item):
+    """The part that an object is, or stands under, or None."""
+    while item is not None and not is_part(item):
+        item = item.parent
+    return item
+
+
 def outermost(part):
-    """The part that contains a part, and so on up; itself where none does."""
+    """The part that contains a part, and so on up; itself where none does. None gives None."""
     seen = {part}
-    while True:
+    while part is not None:
         above = next(
             (
                 each for each in bpy.data.objects
@@ -134,6 +137,22 @@ def outermost(part):
             return part
         seen.add(above)
         part = above
+    return None
+
+
+def remove_part(part):
+    """Remove a part with all objects under it, and their meshes and curves if nothing else uses
+    them."""
+    items = [part, *part.children_recursive]
+    data = [item.data for item in items if item.data is not None]
+    bpy.data.batch_remove(items)
+    for each in data:
+        try:
+            unused = each.users == 0
+        except ReferenceError:  # shared with another, and gone with it
+            continue
+        if unused:
+            bpy.data.batch_remove([each])
 
 
 def middle(items):

@@ -47,14 +47,14 @@ def _object(name, description):
     return bpy.props.PointerProperty(type=bpy.types.Object, name=name, description=description)
 
 
-def _title(word):
+def title_of(word):
     return word.replace("_", " ").title()
 
 
 def _primitive():
     numbers = {
         primitives.property_name(kind, each.word): bpy.props.FloatProperty(
-            name=_title(each.word),
+            name=title_of(each.word),
             description=words.about_parameter(kind, each.word)
             + ("" if each.absolute else "; in the object's own units, scaled with it"),
             default=each.default,
@@ -69,8 +69,10 @@ def _primitive():
             name="Shape",
             description="Which field the object stands for",
             items=[(NO_KIND, "None", "An ordinary object", 0)]
-            + [(kind, _title(kind), kind_text(kind), 1 + number)
-               for kind, number in primitives.NUMBERS.items()],
+            + [
+                (kind, title_of(kind), kind_text(kind), 1 + number)
+                for kind, number in primitives.NUMBERS.items()
+            ],
             update=_shape_changed,
         ),  # fmt: skip
         "infinite": _flag(
@@ -93,7 +95,7 @@ def kind_text(kind):
 
 def _entry():
     operations = [
-        (name, _title(name), words.about(name), number) for number, name in enumerate(OPERATIONS)
+        (name, title_of(name), words.about(name), number) for number, name in enumerate(OPERATIONS)
     ]
     none = ("none", "Field Only", "No part of the solid, but features and formulas may name it", 9)
     return {
@@ -195,7 +197,7 @@ def _part(entry, material, feature, section):
         return bpy.props.IntProperty(name=name, description=f"The chosen one of the {name}", min=0)
 
     rules = [("none", "First Material", "The first material everywhere", 0)]
-    rules += [(name, _title(name), words.about_rule(name), 1 + n) for n, name in enumerate(RULES)]
+    rules += [(name, title_of(name), words.about_rule(name), 1 + n) for n, name in enumerate(RULES)]
     rules += [("text", "As in File", "A rule as JSON text", 99)]
     hidden = {"HIDDEN"}
     return {

@@ -51,8 +51,8 @@ def property_name(kind, word):
 def field_of(kind, values, formula, matrix):
     """The field of a primitive under a 4x4 matrix, as the scene file says it.
 
-    `values`: {word: number}; a cylinder's "infinite" takes its height away. Raises transforms.Flat, and ValueError with a sentence about values
-    that no constructor accepts.
+    `values`: {word: number}; a cylinder's "infinite" takes its height away. Raises transforms.Flat,
+    and ValueError with a sentence about values that no constructor accepts.
     """
     if kind == "formula":
         text = formula.strip().removeprefix("=").strip()
@@ -91,7 +91,7 @@ def _middle(place):
 
 
 def _along(place):
-    """"axis", left out along z."""
+    """The parameter "axis", left out along z."""
     axis = numbers(place.axes[2], 1.0)
     return {} if axis == [0, 0, 1] else {"axis": axis}
 

@@ -12,7 +12,8 @@ import re
 # A string, which is kept, or a comment.
 _PIECE = re.compile(r'"(?:[^"\\]|\\.)*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
 CLOSE = 2e-6  # of the largest number beside it: less is single precision's rounding
-# Objects whose keys are names; every other object is an operation with its parameters.
+# Objects whose keys are names, as those of each material are, which go together in any choice;
+# every other object is an operation with its parameters.
 COLLECTIONS = {(), ("fields",), ("materials",), ("attributes",), ("parameters",)}
 
 
@@ -45,7 +46,7 @@ def merged(now, then, original, path=()):
     if same(now, then):
         return original
     if all(isinstance(each, dict) for each in (now, then, original)):
-        collection = path in COLLECTIONS
+        collection = path in COLLECTIONS or (path[:1] == ("materials",) and len(path) == 2)
         # An operation's words that only the file has may not go with the new ones, as a rotation's
         # angle does not with a quaternion.
         if collection or (original.keys() <= then.keys() and now.keys() <= then.keys()):

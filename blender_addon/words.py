@@ -86,7 +86,7 @@ def blends():
     schema = _definitions().get("blend", {})
     found = {}
     for each in schema.get("anyOf", ()):
-        found |= {name: value for name, value in each.get("properties", {}).items()}
+        found |= each.get("properties", {})
     names = found or BLEND_NUMBERS
     numbers = BLEND_NUMBERS | {
         name: 100 + place for place, name in enumerate(names) if name not in BLEND_NUMBERS

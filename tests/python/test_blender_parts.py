@@ -176,3 +176,67 @@ def test_moving_an_object_changes_its_field_alone(files):
 def test_a_file_gives_objects(files):
     assert files[ROOT / "scenes/lined_bore.json"]["objects"] == 6
     assert files[ROOT / "scenes/cad_pins.json"]["objects"] > 10
+
+
+@pytest.fixture(scope="module")
+def life(version, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("life")
+    return run_check(version, folder, "part_life", folder)
+
+
+def untitled(scene):
+    return {key: value for key, value in scene.items() if key != "title"}
+
+
+def test_a_part_made_by_operators_is_the_scene_that_it_shows(life):
+    scene = life["scene"]
+    assert scene["fields"]["Box"] == {"box": {"size": [4, 3, 2]}}
+    assert scene["fields"]["Cylinder"] == {"cylinder": {"radius": 0.5, "height": 6}}
+    assert scene["fields"]["solid"] == {"difference": {"of": ["Box", "Cylinder"]}}
+    made = sardf.Scene.from_json(json.dumps(scene))
+    near, far = made.fractions([(0.6, 0, 0), (1.9, 1.4, 0.9)])
+    assert made.materials == ["lining", "body"]
+    np.testing.assert_allclose([near, far], [[1, 0], [0, 1]])
+
+
+def test_undo_and_redo_bring_the_scene_back(life):
+    found = life["undo"]
+    assert found["undone"] == found["before"] == life["scene"]
+    assert found["redone"] == found["after"] != found["before"]
+    moved = {"cylinder": {"center": [0.75, 0, 0], "radius": 0.5, "height": 6}}
+    assert found["after"]["fields"]["Cylinder"] == moved
+    assert list(found["after"]["materials"]) == ["lining", "body", "third"]
+
+
+def test_a_copy_is_a_part_of_its_own(life):
+    found = life["copy"]
+    assert untitled(found["same"]) == untitled(life["scene"])
+    assert found["changed"]["fields"]["Cylinder"]["cylinder"]["center"] == [0.5, 0, 0]
+    assert found["original"] == life["scene"]
+
+
+def test_a_bake_leaves_a_mesh_under_the_part(life):
+    found = life["bake"]
+    assert found["parent"] == "Part"
+    assert found["matrix"] == np.eye(4).tolist()
+    assert found["wireframes"]
+    points = np.array(found["points"])
+    block = np.abs(points) / (2, 1.5, 1)
+    on_bore = np.abs(np.hypot(points[:, 0], points[:, 1]) - 0.5) < 0.02
+    assert ((np.abs(block.max(axis=1) - 1) < 0.02) | on_bore).all()
+    assert 0.05 < on_bore.mean() < 0.95
+    assert found["again"]
+    before, first, second = found["counts"]
+    assert second == first
+    assert first["objects"] == before["objects"] + 1
+    assert found["loaded"] == life["scene"]
+    assert found["baked after loading"] == "Part baked"
+
+
+def test_append_and_link_bring_the_part_with_its_entries(life):
+    for kind in ("append", "library"):
+        found = life[kind]
+        assert found["scene"] == life["scene"], kind
+        assert found["request"]
+        assert len(found["baked"]) == 1, kind
+    assert "linked from" in life["library"]["error"]

@@ -40,9 +40,16 @@ def _material(item, values):
 
 
 def followed(material):
-    """The linear base colour of a Blender material: its Principled node's, or the viewport's."""
+    """The linear base colour of a Blender material."""
+    owner, key = color_property(material)
+    return tuple(getattr(owner, key))[:3]
+
+
+def color_property(material):
+    """(owner, name) of the property that is a Blender material's base colour: its Principled
+    node's, or the viewport's."""
     nodes = material.node_tree.nodes if material.node_tree else ()
     for node in nodes:
         if node.type == "BSDF_PRINCIPLED" and not node.inputs["Base Color"].is_linked:
-            return tuple(node.inputs["Base Color"].default_value)[:3]
-    return tuple(material.diffuse_color)[:3]
+            return node.inputs["Base Color"], "default_value"
+    return material, "diffuse_color"

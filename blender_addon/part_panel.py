@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import bpy
 
-from . import part_objects, part_properties, part_status, primitives
+from . import part_materials, part_objects, part_properties, part_status, primitives
 
 LINE = 36  # characters that fit into the sidebar at its default width
 BLENDS_WITHOUT_RADIUS = ("min_max", "r_function")
@@ -43,7 +43,7 @@ class SARDF_UL_materials(bpy.types.UIList):
         swatch = row.row()
         swatch.ui_units_x = 2
         if item.source:
-            swatch.prop(item.source, "diffuse_color", text="")
+            swatch.prop(*part_materials.color_property(item.source), text="")
         else:
             swatch.prop(item, "color", text="")
         row.prop(item, "name", text="", emboss=False)

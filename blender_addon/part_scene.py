@@ -4,10 +4,9 @@
 Everything else (bake, preview, export) takes the dictionary and knows nothing of objects.
 """
 
-import json
 from pathlib import Path
 
-from . import part_features, part_materials, part_properties, scene_text, words
+from . import part_features, part_materials, part_properties, primitives, scene_text, words
 from .part_error import PartError
 from .part_fields import object_field
 from .part_frame import Frame, objects_in_scenes, with_values
@@ -34,8 +33,14 @@ def document_of(part, depsgraph):
     settings = part.sardf_part
     if not settings.imported:
         return {key: value for key, value in now.items() if value not in ({}, [])}, warnings
-    then, original = json.loads(settings.generated), json.loads(settings.imported)
-    return scene_text.merged(now, then, original), warnings
+    return _with_file(part, now), warnings
+
+
+def _with_file(part, now):
+    """What the objects give now in the words of the file that the part came from."""
+    then = json_from(part.sardf_part.generated, f"what '{part.name}' remembers of its objects")
+    original = json_from(part.sardf_part.imported, f"what '{part.name}' remembers of its file")
+    return scene_text.merged(now, then, original)
 
 
 def generated(part, depsgraph):
@@ -185,9 +190,7 @@ class _Builder:
         inner = _Builder(part, self.depsgraph, self._path)
         now, warnings = inner.document()
         settings = part.sardf_part
-        scene = scene_text.merged(
-            now, json.loads(settings.generated), json.loads(settings.imported)
-        )
+        scene = _with_file(part, now)
         if settings.folder:
             scene = absolute_paths(scene, settings.folder)
         self.warnings += warnings
@@ -227,7 +230,8 @@ class _Builder:
         """Names that a file's fields and parameters have already."""
         if not self.part.sardf_part.imported:
             return set()
-        original = json.loads(self.part.sardf_part.imported)
+        what = f"what '{self.part.name}' remembers of its file"
+        original = json_from(self.part.sardf_part.imported, what)
         return {*original.get("fields", ()), *original.get("parameters", ())}
 
     def _sections(self, settings):
@@ -251,8 +255,7 @@ class _Builder:
         if item.sardf_part.is_part:
             return self.part_field(item, item.name)
         if item.type == "EMPTY" and item.sardf_primitive.kind == part_properties.NO_KIND:
-            matrix = self.frame.matrix(item)
-            return placed({"half_space": {}}, matrix.normalized())
+            return primitives.field_of("half_space", {}, "", self.frame.matrix(item))
         return self.object_field(item, as_feature=False)
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs one of the part_* checks with the add-on of a checkout: ... -- ADDON_FOLDER RESULT.json CHECK
-[ARGUMENT ...]
+"""Runs one of the part_* checks with the add-on of a checkout:
+... -- ADDON_FOLDER RESULT.json CHECK [ARGUMENT ...]
 
 CHECK is a module beside this file; its main(*arguments) returns what is written as the result.
 """

@@ -70,9 +70,7 @@ def _result(part, item, kind, transform, matrix):
     world = part.matrix_world.inverted() @ item.matrix_world
     off = max(abs(world[row][column] - matrix[row][column]) for row in range(4) for column in
               range(4))  # fmt: skip
-    values = {
-        each.word: each.default for each in primitives.KINDS.get(kind, ())
-    }
+    values = {each.word: each.default for each in primitives.KINDS.get(kind, ())}
     return {
         "kind": kind,
         "transform": transform,

@@ -16,6 +16,8 @@ from mathutils import Matrix
 from . import assemble, core, job, part_scene
 from .part_error import PartError
 
+KEEPS = "sardf image of "  # custom properties of a baked object, each with a channel's image
+
 
 def request_of(part, settings, depsgraph):
     """(job.Request, warnings) for a part, with the panel's settings. Raises PartError."""
@@ -46,7 +48,15 @@ def find(key):
 
 def place(scene, part, made, built):
     """The mesh object of a baked part under its Empty: a new one, or the earlier one renewed."""
-    item = assemble.place(scene, made, built, _baked(part) or assemble.NEW)
+    earlier = _baked(part)
+    if earlier is not None:
+        for key in [key for key in earlier.keys() if key.startswith(KEEPS)]:  # noqa: SIM118
+            del earlier[key]
+    item = assemble.place(scene, made, built, earlier or assemble.NEW)
+    for channel, image in built.items():
+        if image.use_fake_user:  # no material reads it: the object does, so that both go together
+            item[KEEPS + channel] = image
+            image.use_fake_user = False
     if item.parent != part:
         item.name = f"{part.name} baked"
         item.parent = part

@@ -9,6 +9,7 @@ from pathlib import Path
 import bpy
 
 from . import mesh_files, part_scene
+from .part_error import PartError
 
 ENDING = "_meshes"  # of the folder beside the file for meshes of our own
 
@@ -17,6 +18,8 @@ def write(part, path, depsgraph):
     """Write the scene file; returns warnings. Raises PartError and OSError."""
     document, warnings = part_scene.document_of(part, depsgraph)
     path = Path(bpy.path.abspath(str(path))).resolve()
+    if not path.parent.is_dir():
+        raise PartError(f"{path}: there is no folder {path.parent}")
     document = _with_paths(document, part.sardf_part.folder, path)
     text = json.dumps(document, indent=1, ensure_ascii=False) + "\n"
     unfinished = path.with_name(f".{path.name}.{os.getpid()}")

@@ -42,7 +42,8 @@ def object_field(item, frame, warnings, as_feature=False):
 def primitive_field(item, settings, matrix):
     """The field of a primitive with (evaluated) settings; as primitives.field_of."""
     kind = item.sardf_primitive.kind
-    return primitives.field_of(kind, values_of(settings, kind), settings.formula, matrix)
+    formula = item.sardf_primitive.formula  # text cannot be animated
+    return primitives.field_of(kind, values_of(settings, kind), formula, matrix)
 
 
 def values_of(settings, kind):

@@ -25,9 +25,16 @@ def on_shape_change(draw):
     _draw = draw
 
 
-def _shape_changed(primitive, _context):
+def _shape_changed(primitive, context):
+    _changed(primitive, context)
     if _draw is not None:
         _draw(primitive.id_data)
+
+
+def _changed(group, _context):
+    """Blender itself evaluates an object anew only after changes of properties that have an
+    update function; then drivers see the change, too, and so do handlers."""
+    group.id_data.update_tag()
 
 
 def _group(name, properties):
@@ -36,15 +43,19 @@ def _group(name, properties):
 
 
 def _text(name, description, **more):
+    more = {"update": _changed} | more
     return bpy.props.StringProperty(name=name, description=description, **more)
 
 
 def _flag(name, description, default=False, **more):
+    more = {"update": _changed} | more
     return bpy.props.BoolProperty(name=name, description=description, default=default, **more)
 
 
 def _object(name, description):
-    return bpy.props.PointerProperty(type=bpy.types.Object, name=name, description=description)
+    return bpy.props.PointerProperty(
+        type=bpy.types.Object, name=name, description=description, update=_changed
+    )
 
 
 def title_of(word):
@@ -106,12 +117,14 @@ def _entry():
             name="Operation",
             description="How the entry joins the entries above it",
             items=[*operations, none],
+            update=_changed,
         ),
         "blend": bpy.props.EnumProperty(
             name="Blend",
             description="How the entry and what is above it are joined where they meet",
             items=[(name, name, text, number) for name, text, number in words.blends()],
             default="min_max",
+            update=_changed,
         ),
         "radius": bpy.props.FloatProperty(
             name="Radius",
@@ -119,6 +132,7 @@ def _entry():
             default=0.5,
             min=0.0,
             soft_max=10.0,
+            update=_changed,
         ),
         "mute": _flag("Mute", "Leave the entry out of the solid"),
         "as_feature": _flag(
@@ -132,22 +146,26 @@ def _entry():
 def _material():
     def number(name, key, default, **limits):
         text = words.about_material(key) or key
-        return bpy.props.FloatProperty(name=name, description=text, default=default, **limits)
+        return bpy.props.FloatProperty(
+            name=name, description=text, default=default, update=_changed, **limits
+        )
 
     return {
         "color": bpy.props.FloatVectorProperty(
             name="Color", description="Linear colour of the pure material", size=3,
             subtype="COLOR", default=(0.6, 0.6, 0.6), min=0.0, max=1.0,
+            update=_changed,
         ),
         "source": bpy.props.PointerProperty(
             type=bpy.types.Material, name="Blender Material",
-            description="A Blender material whose base colour this one follows",
+            description="A Blender material whose base colour this one follows", update=_changed,
         ),
         "roughness": number("Roughness", "roughness", 0.5, min=0.0, max=1.0),
         "metallic": number("Metallic", "metallic", 0.0, min=0.0, max=1.0),
         "emission": bpy.props.FloatVectorProperty(
             name="Emission", description="Linear colour that it gives off", size=3,
             subtype="COLOR", default=(0.0, 0.0, 0.0), min=0.0, soft_max=1.0,
+            update=_changed,
         ),
         "density": number("Density", "density", 0.0, min=0.0),
         "index_of_refraction": number(
@@ -170,11 +188,13 @@ def _feature():
             "The material's share as a formula of u, the distance to the feature: exp(-u^2)",
         ),
         "exponent": bpy.props.FloatProperty(
-            name="Exponent", description=words.about_feature("exponent"), default=1.0, min=1e-3
+            name="Exponent", description=words.about_feature("exponent"), default=1.0, min=1e-3,
+            update=_changed,
         ),
         "influence": _text("Influence", words.about_feature("influence")),
         "distance": bpy.props.FloatProperty(
-            name="Distance", description="Where along the first feature's field the stop lies"
+            name="Distance", description="Where along the first feature's field the stop lies",
+            update=_changed,
         ),
         "fractions": _text("Fractions", "A rule as JSON, in place of a material"),
     }  # fmt: skip
@@ -215,14 +235,14 @@ def _part(entry, material, feature, section):
         "section_index": index("sections"),
         "rule": bpy.props.EnumProperty(
             name="Rule", description="How the features make the fractions of the materials",
-            items=rules,
+            items=rules, update=_changed,
         ),
         "rule_text": _text("Rule as Text", "A fraction rule of scene files, as JSON"),
         "units": bpy.props.EnumProperty(
             name="Unit", description="What one Blender unit stands for",
             items=[(unit, unit, f"One Blender unit is one {unit}", n)
                    for n, unit in enumerate(UNITS)],
-            default="mm",
+            default="mm", update=_changed,
         ),
         "solid_field": _text("Solid", "The name of the solid's field in the file", options=hidden),
         "imported": _text("Imported", "The scene file's document", options=hidden),

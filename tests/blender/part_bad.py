@@ -25,6 +25,7 @@ def main(folder):
         bpy.ops.sardf.primitive_add(kind="cylinder", operation="difference")
         part = part_objects.parts(bpy.context.scene)[0]
         bpy.context.view_layer.objects.active = part
+        bpy.context.scene.sardf.resolution, bpy.context.scene.sardf.size = 8, "256"
         result[name] = check(part, Path(folder))
     result["many"] = many()
     return result
@@ -34,12 +35,12 @@ def said(part):
     """The sentence of the error, or the warnings."""
     depsgraph = bpy.context.evaluated_depsgraph_get()
     part_status.forget()
-    status = part_status.status(part, depsgraph)
+    status = part_status.status(part, depsgraph)  # what the panel shows
     try:
-        return part_scene.scene_of(part, depsgraph)[1]
+        text, shown = part_scene.scene_of(part, depsgraph)[1], list(status.lines)
     except part_scene.PartError as error:
-        assert status.error == str(error)
-        return str(error)
+        text, shown = str(error), status.error
+    return text if text == shown else f"{text}, but the panel says {shown}"
 
 
 def reported(operator, **arguments):

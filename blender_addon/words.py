@@ -36,7 +36,7 @@ def _constructor(name):
 
 def about(constructor):
     """The sentence that describes a constructor."""
-    return _constructor(constructor).get("description", UNKNOWN)
+    return _tooltip(_constructor(constructor).get("description", UNKNOWN))
 
 
 def about_parameter(constructor, parameter):
@@ -53,9 +53,9 @@ def about_material(key):
 def about_rule(name):
     """The sentence that describes a fraction rule."""
     found = _alternative(_definitions().get("fractions", {}), name)
-    return found.get("description") or next(
-        (each["description"] for each in found.get("anyOf", ()) if "description" in each), UNKNOWN
-    )
+    texts = [each["description"] for each in (found, *found.get("anyOf", ()))
+             if "description" in each]  # fmt: skip
+    return _tooltip(texts[0] if texts else UNKNOWN)
 
 
 def about_feature(key):
@@ -65,8 +65,13 @@ def about_feature(key):
     return _described(items.get("properties", {}).get(key, {}))
 
 
+def _tooltip(text):
+    """Blender puts a full stop behind every tooltip itself."""
+    return text.removesuffix(".")
+
+
 def _described(schema):
-    text = schema.get("description", UNKNOWN)
+    text = _tooltip(schema.get("description", UNKNOWN))
     limits = _range(schema)
     return f"{text}; {limits}" if limits else text
 
@@ -92,7 +97,8 @@ def blends():
         name: 100 + place for place, name in enumerate(names) if name not in BLEND_NUMBERS
     }
     return [
-        (name, found.get(name, {}).get("description", UNKNOWN), numbers[name]) for name in names
+        (name, _tooltip(found.get(name, {}).get("description", UNKNOWN)), numbers[name])
+        for name in names
     ]
 
 

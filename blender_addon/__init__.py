@@ -14,8 +14,23 @@ camera       the core's camera dictionary -> camera object
 studio       soft lights and a neutral world around the object
 render       Cycles settings of each look
 assemble     all of the above for one part; used by the operators and by headless.py alike
-properties operators panel    the user interface
+properties operators panel    the user interface for scene files, and the bake
+
+A part is modelled from objects (the modules part_*). In the order of its data:
+
+part_properties   what the .blend keeps of parts, primitives, materials and features
+words             what the core says about its words, for tooltips
+primitives wireframes    the unit shapes: as fields under a matrix, and as edges
+transforms part_frame    an object's matrix in the scene file's words, relative to its part
+curves mesh_files part_fields    each kind of object as a field
+part_materials part_features part_join part_scene    the lists and entries as one scene
+scene_text        scene files as data, and how an imported one keeps its words
+import_numbers import_shapes import_fractions part_import part_export    from and to files
+part_bake         a part's scene through job and assemble, in animations too
+part_objects part_lists part_presets part_operators part_status part_panel    the user interface
 """
+
+import importlib
 
 bl_info = {
     "name": "sardf",
@@ -28,17 +43,24 @@ bl_info = {
 }
 
 
-def register():
-    from . import operators, panel, properties
+MODULES = (  # in the order in which Blender must know them
+    "properties",
+    "part_properties",
+    "part_objects",
+    "part_status",
+    "operators",
+    "part_lists",
+    "part_operators",
+    "panel",
+    "part_panel",
+)
 
-    properties.register()
-    operators.register()
-    panel.register()
+
+def register():
+    for name in MODULES:
+        importlib.import_module(f".{name}", __package__).register()
 
 
 def unregister():
-    from . import operators, panel, properties
-
-    panel.unregister()
-    operators.unregister()
-    properties.unregister()
+    for name in reversed(MODULES):
+        importlib.import_module(f".{name}", __package__).unregister()

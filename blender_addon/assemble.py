@@ -38,18 +38,21 @@ def glows(part):
     return bool(np.any(part.maps["emission"] > 0)) if "emission" in part.maps else False
 
 
-def place(scene, part, built):
+NEW = "new"  # in place of an earlier object: make another
+
+
+def place(scene, part, built, earlier=None):
     """The object of `part` in `scene`: a new one, or our earlier one with its content renewed.
 
-    An earlier object is known by its SOURCE property. It keeps its place, modifiers and its
-    material's other nodes; mesh and images are replaced.
+    An earlier object is given, or else known by its SOURCE property. It keeps its place, modifiers
+    and its material's other nodes; mesh and images are replaced.
     """
     mesh = mesh_data.build(part.name, part.mesh, part.fractions, part.scene.materials)
     names = mesh_data.set_attributes(mesh, part.attributes)
     old_images = [i for i in bpy.data.images if i.get(SOURCE) == part.source]
     read = {channel: image for channel, image in built.items() if channel in material.SOCKETS}
-    item = find(scene, part.source)
-    if item is None:
+    item = find(scene, part.source) if earlier is None else earlier
+    if item in (None, NEW):
         item = bpy.data.objects.new(part.name, mesh)
         item[SOURCE] = part.source
         scene.collection.objects.link(item)

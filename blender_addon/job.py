@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From a scene file to the arrays that Blender needs; no bpy here, so that a thread may run it."""
+"""From a scene to the arrays that Blender needs; no bpy here, so that a thread may run it."""
 
+import json
 import threading
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +16,8 @@ MESH_SHARE = 0.4  # of the time, for the progress bar: meshing took 0.2 to 0.6 o
 class Request:
     """What to make: cells along the longest side, texels along a texture's side, cut or whole.
 
-    `tangent`: the attribute along which metal is brushed, "" for GRAIN in a scene that has it.
+    `path`: the scene file, or with `scene`, the dictionary that one holds, what the scene is known
+    by. `tangent`: the attribute along which metal is brushed, "" for GRAIN in a scene that has it.
     """
 
     path: str
@@ -24,6 +26,7 @@ class Request:
     sections: bool = True
     channels: tuple = CHANNELS
     tangent: str = ""
+    scene: dict | None = None
 
 
 @dataclass
@@ -45,10 +48,10 @@ class Part:
 
 
 def make_part(sardf, request, progress=None):
-    """Mesh, bake and evaluate the scene file of `request`.
+    """Mesh, bake and evaluate the scene of `request`.
 
     `progress(share)` is called with the share done in [0, 1] and returns False to cancel; then
-    sardf.Cancelled is raised. Raises sardf.Error for what is wrong in the file.
+    sardf.Cancelled is raised. Raises sardf.Error for what is wrong in the scene.
     """
 
     def between(start, stop):
@@ -56,7 +59,10 @@ def make_part(sardf, request, progress=None):
             return None
         return lambda share: progress(start + (stop - start) * share)
 
-    scene = sardf.load(request.path)
+    if request.scene is None:
+        scene = sardf.load(request.path)
+    else:
+        scene = sardf.Scene.from_json(json.dumps(request.scene), {}, between(0.0, 0.0))
     tangent = tangent_of(scene, request.tangent)
     mesh = scene.mesh(
         resolution=request.resolution,

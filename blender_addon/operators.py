@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the panel's buttons do: load a scene file, bake it, render it."""
+"""What the panel's buttons do: load a scene file, bake it or the active part, render it."""
 
 import traceback
 from typing import ClassVar
@@ -7,7 +7,19 @@ from typing import ClassVar
 import bpy
 from bpy_extras.io_utils import ImportHelper
 
-from . import assemble, camera, core, images, job, properties, render, studio
+from . import (
+    assemble,
+    camera,
+    core,
+    images,
+    job,
+    part_bake,
+    part_objects,
+    properties,
+    render,
+    studio,
+)
+from .part_error import PartError
 
 POLL_SECONDS = 0.05
 
@@ -41,7 +53,10 @@ class SARDF_OT_bake(bpy.types.Operator):
 
     bl_idname = "sardf.bake"
     bl_label = "Bake"
-    bl_description = "Mesh the part and bake its materials into textures (Esc cancels)"
+    bl_description = (
+        "Mesh the active object's part, or else the scene file, and bake its materials into "
+        "textures (Esc cancels)"
+    )
     bl_options: ClassVar[set] = {"UNDO"}
 
     job = None  # of the session, not of the file: the running job.Job, or None
@@ -49,28 +64,44 @@ class SARDF_OT_bake(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return SARDF_OT_bake.job is None and bool(context.scene.sardf.filepath)
+        something = context.scene.sardf.filepath or part_objects.part_above(context.active_object)
+        return SARDF_OT_bake.job is None and bool(something)
 
     def execute(self, context):
         try:
             sardf = core.load()
-        except core.MissingCore as error:
+            request = self._request(context)
+        except (core.MissingCore, PartError) as error:
             return self._fail(error)
         try:
-            part = job.make_part(sardf, properties.request(context.scene.sardf))
+            part = job.make_part(sardf, request)
         except sardf.Error as error:
             return self._fail(error)
-        self._commit(context, part, dict(_packed_images(part)))
-        return {"FINISHED"}
+        return self._commit(context, part, dict(_packed_images(part)))
+
+    def _request(self, context):
+        """What to bake: the active object's part, or the scene file. Raises PartError."""
+        part = part_objects.outermost(part_objects.part_of(context.active_object))
+        self._part = None if part is None else part_bake.key_of(part)
+        if part is None:
+            if not context.scene.sardf.filepath:
+                raise PartError("there is nothing to bake: no scene file, and no part is active")
+            return properties.request(context.scene.sardf)
+        depsgraph = context.evaluated_depsgraph_get()
+        request, warnings = part_bake.request_of(part, context.scene.sardf, depsgraph)
+        for text in warnings:
+            self.report({"WARNING"}, text)
+        return request
 
     def invoke(self, context, _event):
         if bpy.app.background:
             return self.execute(context)
         try:
             sardf = core.load()
-        except core.MissingCore as error:
+            request = self._request(context)
+        except (core.MissingCore, PartError) as error:
             return self._fail(error)
-        SARDF_OT_bake.job = job.Job(sardf, properties.request(context.scene.sardf))
+        SARDF_OT_bake.job = job.Job(sardf, request)
         self._images, self._steps = {}, None
         manager = context.window_manager
         self._timer = manager.event_timer_add(POLL_SECONDS, window=context.window)
@@ -110,19 +141,28 @@ class SARDF_OT_bake(bpy.types.Operator):
             return {"PASS_THROUGH"}
         built, self._images = self._images, {}
         self._clean_up(context)
-        self._commit(context, part, built)
-        return {"FINISHED"}
+        return self._commit(context, part, built)
 
     def _commit(self, context, part, built):
         settings = context.scene.sardf
+        try:
+            parent = None if self._part is None else part_bake.find(self._part)
+        except PartError as error:  # it was deleted meanwhile
+            for image in built.values():
+                bpy.data.images.remove(image)
+            return self._fail(error)
         if settings.set_units:
             assemble.set_units(context.scene, part.scene)
-        item = assemble.place(context.scene, part, built)
+        if parent is None:
+            item = assemble.place(context.scene, part, built)
+        else:
+            item = part_bake.place(context.scene, parent, part, built)
         for other in context.selected_objects:
             other.select_set(False)
         item.select_set(True)
         context.view_layer.objects.active = item
         self.report({"INFO"}, f"Baked {part.name}: {len(part.mesh.faces)} faces")
+        return {"FINISHED"}
 
     def _show(self, context):
         running = SARDF_OT_bake.job

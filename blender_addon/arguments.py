@@ -91,6 +91,8 @@ def _add_bake(parser):
     parser.add_argument("--tangent", default="", metavar="NAME",
                         help="vector attribute along which metal is brushed; default: "
                         "grain_direction, where the scene has it")  # fmt: skip
+    parser.add_argument("--normal-map", action=flag, default=False,
+                        help="bake the solid's normals for a coarse mesh")  # fmt: skip
     parser.add_argument("--section", action=flag, default=True, help="cut the part open")
 
 

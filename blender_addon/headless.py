@@ -57,6 +57,7 @@ def make_part(options, signals):
     path, scene = addon("sources").find(options)
     whole = options.command == "bake" or options.keep_blend or "shaded" in options.look
     wanted = job.CHANNELS if whole else ("base_color",)
+    wanted += (job.NORMAL_MAP,) if options.normal_map else ()
     request = job.Request(
         path, options.resolution, options.size, options.section, wanted, options.tangent, scene
     )

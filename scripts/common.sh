@@ -52,8 +52,8 @@ make_environment() {
   # A moved folder or another Python leaves an environment whose programs do not start.
   if [ "$(head -n 1 "$folder/bin/pip" 2>/dev/null)" != "#!$root/$folder/bin/python3" ] ||
     ! "$folder/bin/pip" --version >"$logs/pip.log" 2>&1; then
-    step "create ${folder##*/}" "$of" -m venv --clear "$folder"
+    step "create ${folder//\//-}" "$of" -m venv --clear "$folder"
   fi
-  step "fill ${folder##*/}" "$folder/bin/pip" install $(pins "$@")
+  step "fill ${folder//\//-}" "$folder/bin/pip" install $(pins "$@")
   echo "$wanted" >"$folder/.pins"
 }

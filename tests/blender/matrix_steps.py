@@ -28,9 +28,10 @@ def module():
 
 
 def enabled():
-    """Whether the add-on is enabled by the preferences that `install` saved."""
-    if module() not in bpy.context.preferences.addons:
-        bpy.ops.wm.read_userpref()  # the bpy module starts with factory settings
+    """Whether the add-on is enabled: by the preferences that `install` saved, or, where Blender is
+    a module, which starts with factory settings, by hand."""
+    if module() not in bpy.context.preferences.addons and not bpy.app.binary_path:
+        bpy.ops.preferences.addon_enable(module=module())
     return module() in bpy.context.preferences.addons
 
 

@@ -168,14 +168,9 @@ bpy.ops.wm.save_as_mainfile(filepath={str(made)!r})
     user = environment(tmp_path / "user")
     done = subprocess.run([BPY_PYTHON, "-c", code], capture_output=True, text=True, env=user)
     assert made.is_file(), done.stdout + done.stderr
-    words = [made, "-o", tmp_path / "out", "--resolution", 12, "--size", 128, "--look", "flat"]
-    headless = [BPY_PYTHON, ROOT / "blender_addon/headless.py", *words, "--width", 24]
-    done = subprocess.run(
-        [str(word) for word in [*headless, "--height", 16]],
-        capture_output=True,
-        text=True,
-        env=user,
-    )
+    small = ["--resolution", "12", "--size", "128", "--width", "24", "--height", "16"]
+    words = [BPY_PYTHON, HEADLESS, made, "-o", tmp_path / "out", "--look", "flat", *small]
+    done = subprocess.run(words, capture_output=True, text=True, env=user)
     assert done.returncode == 0, done.stdout + done.stderr
     written = {path.name for path in Path(tmp_path / "out").iterdir()}
     assert written == {"flat.exr", "part.blend", "camera.json", "textures"}

@@ -196,7 +196,7 @@ def test_zips_refuse_wheels_that_do_not_fit(built, wheel, tmp_path):
 def test_a_wheel_is_made_self_contained_once(wheel, built, tmp_path):
     done = tool(SELF_CONTAINED, wheel, "-o", tmp_path)
     assert done.returncode == 2
-    assert "sardf-VERSION-cp3XX-cp3XX-linux_*" in done.stderr
+    assert "expected a wheel for linux on a system with glibc" in done.stderr
     again = tmp_path / built.name
     shutil.copy(wheel, again)
     done = tool(SELF_CONTAINED, again, "-o", tmp_path / "out")

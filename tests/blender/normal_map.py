@@ -96,6 +96,7 @@ def main(blend, result_file):
     bpy.ops.wm.open_mainfile(filepath=blend)
     scene = bpy.context.scene
     look_from_above(scene)
+    scene.world = None  # black beside the part
     part = next(item for item in scene.objects if item.type == "MESH")
     tree = part.data.materials[0].node_tree
     bent = tree.nodes["sardf normal map"].outputs["Normal"]

@@ -14,6 +14,8 @@ camera       the core's camera dictionary -> camera object
 studio       soft lights and a neutral world around the object
 render       Cycles settings of each look
 assemble     all of the above for one part; used by the operators and by headless.py alike
+headless commands    runs without a window: as a script, and as `blender -c sardf`
+arguments sources outputs    their options, what they read, and how files get their names
 properties operators panel    the user interface for scene files, and the bake
 
 A part is modelled from objects (the modules part_*). In the order of its data:
@@ -53,6 +55,7 @@ MODULES = (  # in the order in which Blender must know them
     "part_operators",
     "panel",
     "part_panel",
+    "commands",
 )
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The command line of headless.py and the ways in which a run ends."""
+"""The command line of headless.py and of the commands, and the ways in which a run ends."""
 
 import argparse
 
@@ -45,27 +45,61 @@ def looks(text):
     return [name for name in known if name in names]
 
 
-def parse(arguments):
-    """The options, checked. Raises Stop."""
-    parser = Parser(prog="headless.py", description="Render a scene file without a window.")
+COMMANDS = {  # what they do, and what -o names
+    "render": ("Bake and render without a window.", "folder to write to"),
+    "bake": ("Bake without a window.", "folder to write to"),
+    "export": ("Write a scene file, or a scene for POV-Ray.", "file.json or file.pov"),
+}
+
+
+def parse(arguments, command="render", program="headless.py"):
+    """The options of one of COMMANDS, checked. Raises Stop."""
+    if command not in COMMANDS:
+        raise Stop(WRONG_INPUT, f"there is no command '{command}'; {', '.join(COMMANDS)} are")
+    description, output = COMMANDS[command]
+    parser = Parser(prog=program, description=description)
+    opened = program != "headless.py"  # a command may be about the file that Blender opened
+    parser.add_argument("scene", metavar="SCENE", nargs="?" if opened else None,
+                        help="scene file, or .blend with a part")  # fmt: skip
+    parser.add_argument("-o", "--output", required=True, metavar="OUT", help=output)
+    parser.add_argument("--part", default="", metavar="NAME",
+                        help="of a .blend: the part to take, where it has several")  # fmt: skip
+    if command == "export":
+        return _checked_export(parser.parse_args(arguments))
+    _add_bake(parser)
+    if command == "render":
+        _add_render(parser)
+    return parser.parse_args(arguments)
+
+
+def _checked_export(options):
+    options.format = options.output.rpartition(".")[2].lower()
+    if options.format not in ("json", "pov"):
+        raise Stop(WRONG_INPUT, f"{options.output}: expected a name that ends in .json or .pov")
+    return options
+
+
+def _add_bake(parser):
     flag = argparse.BooleanOptionalAction
-    parser.add_argument("scene", metavar="SCENE", help="scene file")
-    parser.add_argument("-o", "--output", required=True, metavar="OUT", help="folder to write to")
     parser.add_argument("--resolution", type=whole(4, 4096), default=128,
                         help="cells along the longest side (%(default)s)")  # fmt: skip
     parser.add_argument("--size", type=whole(64, 16384), default=2048,
                         help="texels along a texture's side (%(default)s)")  # fmt: skip
-    parser.add_argument("--samples", type=whole(1, 65536), default=64,
-                        help="samples of each pixel of the shaded look (%(default)s)")  # fmt: skip
     parser.add_argument("--width", type=whole(8, 16384), default=640, help="pixels (%(default)s)")
     parser.add_argument("--height", type=whole(8, 16384), default=480, help="pixels (%(default)s)")
     parser.add_argument("--camera", metavar="JSON", help="a camera.json to use, not our framing")
     parser.add_argument("--tangent", default="", metavar="NAME",
                         help="vector attribute along which metal is brushed; default: "
                         "grain_direction, where the scene has it")  # fmt: skip
+    parser.add_argument("--normal-map", action=flag, default=False,
+                        help="bake the solid's normals for a coarse mesh")  # fmt: skip
     parser.add_argument("--section", action=flag, default=True, help="cut the part open")
+
+
+def _add_render(parser):
+    parser.add_argument("--samples", type=whole(1, 65536), default=64,
+                        help="samples of each pixel of the shaded look (%(default)s)")  # fmt: skip
     parser.add_argument("--look", type=looks, default=["shaded"], metavar="LOOK[,LOOK]",
                         help="shaded, flat, normals (shaded)")  # fmt: skip
-    parser.add_argument("--keep-blend", action=flag, default=True,
+    parser.add_argument("--keep-blend", action=argparse.BooleanOptionalAction, default=True,
                         help="write part.blend and textures")  # fmt: skip
-    return parser.parse_args(arguments)

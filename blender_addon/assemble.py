@@ -50,7 +50,7 @@ def place(scene, part, built, earlier=None):
     mesh = mesh_data.build(part.name, part.mesh, part.fractions, part.scene.materials)
     names = mesh_data.set_attributes(mesh, part.attributes)
     old_images = [i for i in bpy.data.images if i.get(SOURCE) == part.source]
-    read = {channel: image for channel, image in built.items() if channel in material.SOCKETS}
+    read = {channel: image for channel, image in built.items() if channel in material.READ}
     item = find(scene, part.source) if earlier is None else earlier
     if item in (None, NEW):
         item = bpy.data.objects.new(part.name, mesh)
@@ -62,6 +62,7 @@ def place(scene, part, built, earlier=None):
     for each in kept or [material.build(part.name, read)]:
         mesh.materials.append(each)
         material.assign_images(each, read, glows(part))
+        material.set_normal_map(each, built.get(material.NORMAL))
         material.set_tangent(each, names.get(part.tangent, ""))
     item.data = mesh
     _forget(old_mesh, old_images)
@@ -84,7 +85,7 @@ def _label(part, built):
     for channel, image in built.items():
         image.name = f"{part.name} {channel}"
         image[SOURCE] = part.source
-        image.use_fake_user = channel not in material.SOCKETS
+        image.use_fake_user = channel not in material.READ
         if channel.startswith("fractions_"):  # three materials each, in red, green, blue
             first = 3 * (int(channel.split("_")[1]) - 1)
             image["sardf_materials"] = ", ".join(part.scene.materials[first : first + 3])

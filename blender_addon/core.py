@@ -46,11 +46,21 @@ def load():
         except ImportError as error:  # a missing or older shared library of the system
             place = "Blender's Python" if folder is None else folder
             raise MissingCore(f"the module 'sardf' in {place} does not load: {error}") from error
+    brought = brought_tags()
+    if brought and python_tag() not in brought:
+        reasons.insert(0, f"this zip of the add-on brought it for {', '.join(brought)} only")
     raise MissingCore(
         f"the Python module 'sardf' built for {python_tag()} (this is Python "
         f"{sys.version_info.major}.{sys.version_info.minor}) was not found: {'; '.join(reasons)}; "
-        "install it for this Python or set SARDF_PYTHON to the folder that holds it"
+        f"use a zip that has it for {python_tag()}, install it for this Python, or set "
+        "SARDF_PYTHON to the folder that holds it"
     )
+
+
+def brought_tags():
+    """The Pythons, such as cp311, for which this copy of the add-on brought the module."""
+    wheels = [path.name.split("-")[2] for path in (HERE / "wheels").glob("sardf-*-*-*-*.whl")]
+    return sorted({*wheels, *_tags(HERE / "vendor" / "sardf")})
 
 
 def _folders():
@@ -82,9 +92,14 @@ def _reason_against(folder):
     suffixes = tuple(importlib.machinery.EXTENSION_SUFFIXES)
     if any(name[len("_core") :] in suffixes for name in found):
         return ""
-    # _core.cpython-311-x86_64-linux-gnu.so -> cp311
-    tags = sorted({name.split(".")[1].split("-x86")[0].replace("cpython-", "cp") for name in found})
+    tags = _tags(*places)
     return f"{places[0]} is built for {', '.join(tags) if tags else 'no Python at all'}"
+
+
+def _tags(*places):
+    """Of the compiled modules in folders: _core.cpython-311-x86_64-linux-gnu.so -> cp311."""
+    names = [file.name.split(".")[1] for place in places for file in place.glob("_core.*")]
+    return sorted({name.split("-x86")[0].replace("cpython-", "cp") for name in names})
 
 
 def _load_from(folder):

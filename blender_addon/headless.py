@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Render a scene file without a window.
+"""Render a scene file, or a part in a .blend file, without a window.
 
     blender -b -P blender_addon/headless.py -- SCENE -o OUT [options]
     python blender_addon/headless.py SCENE -o OUT [options]      (with the bpy module)
@@ -7,7 +7,7 @@
 Writes into the folder OUT: the picture of each look (part.png, flat.exr, normals.exr), camera.json
 with the camera used, and, unless --no-keep-blend, part.blend with its images inside and the baked
 channels as textures/*.exr. Exit code: 0 everything was written, 1 it was not, 2 wrong input or
-usage; then one line on standard error says why.
+usage; then one line on standard error says why. The commands of commands.py run here as well.
 """
 
 import importlib.util
@@ -19,7 +19,7 @@ import time
 import traceback
 from pathlib import Path
 
-PACKAGE = "sardf_blender"  # as it is called when installed
+PACKAGE = __package__ or "sardf_blender"  # a script has no package: called as when installed
 
 
 def import_addon():
@@ -44,16 +44,22 @@ DONE, FAILED, WRONG_INPUT = arguments.DONE, arguments.FAILED, arguments.WRONG_IN
 Stop = arguments.Stop
 
 
-def make_part(options, signals):
-    """The arrays of the scene file, and its camera."""
-    core, job, camera = addon("core"), addon("job"), addon("camera")
+def load_core():
     try:
-        sardf = core.load()
-    except core.MissingCore as error:
+        return addon("core").load()
+    except addon("core").MissingCore as error:
         raise Stop(FAILED, str(error)) from error
-    wanted = job.CHANNELS if options.keep_blend or "shaded" in options.look else ("base_color",)
+
+
+def make_part(options, signals):
+    """The arrays of the scene or part, and its camera."""
+    job, camera, sardf = addon("job"), addon("camera"), load_core()
+    path, scene = addon("sources").find(options)
+    whole = options.command == "bake" or options.keep_blend or "shaded" in options.look
+    wanted = job.CHANNELS if whole else ("base_color",)
+    wanted += (job.NORMAL_MAP,) if options.normal_map else ()
     request = job.Request(
-        options.scene, options.resolution, options.size, options.section, wanted, options.tangent
+        path, options.resolution, options.size, options.section, wanted, options.tangent, scene
     )
     try:
         given = camera.read(options.camera) if options.camera else None
@@ -66,12 +72,23 @@ def make_part(options, signals):
         raise
 
 
-def build_scene(part, view, options):
-    """An empty Blender session with the part, its camera, lights and units in it."""
+def start_empty():
+    """An empty Blender session. A command belongs to an enabled add-on, so it keeps the
+    preferences; a script starts from factory settings."""
     import bpy  # not at the top: without it, main() says what is missing
 
+    if __package__:
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    else:
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+
+
+def build_scene(part, view, options):
+    """An empty Blender session with the part, its camera, lights and units in it."""
+    import bpy
+
     assemble, camera, studio, render = map(addon, ("assemble", "camera", "studio", "render"))
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    start_empty()
     scene = bpy.context.scene
     assemble.set_units(scene, part.scene)
     images = assemble.build_images(part)
@@ -134,12 +151,13 @@ def run(options):
         made = time.perf_counter()
         print(f"sardf: {vertices} vertices, {faces} faces, baked in {made - started:.1f} s")
         scene, item, images = build_scene(part, view, options)
-        render_looks(scene, item, images, options, workplace, signals)
-        if options.keep_blend:
+        if options.command == "render":
+            render_looks(scene, item, images, options, workplace, signals)
+            print(f"sardf: rendered in {time.perf_counter() - made:.1f} s")
+        if options.command == "bake" or options.keep_blend:
             keep_blend(images, workplace)
         signals.check()
         (workplace / "camera.json").write_text(json.dumps(view, indent=1) + "\n")
-        print(f"sardf: rendered in {time.perf_counter() - made:.1f} s")
         return outputs.publish(workplace, options.output)
     except OSError as error:
         raise Stop(FAILED, f"{options.output}: cannot be written: {error}") from error
@@ -147,13 +165,38 @@ def run(options):
         shutil.rmtree(workplace, ignore_errors=True)
 
 
-def main(words):
-    """Run with a list of command-line words; returns the exit code."""
+def export(options):
+    """Write the scene file or the scene for POV-Ray and return the written file."""
+    import bpy
+
+    sardf, sources, output = load_core(), addon("sources"), Path(options.output).resolve()
+    is_part = not options.scene or options.scene.lower().endswith(".blend")
     try:
-        options = arguments.parse(words)
+        if is_part and options.format == "json":
+            depsgraph = bpy.context.evaluated_depsgraph_get
+            part = sources.part_of(options)  # opens the file, so it comes first
+            for warning in addon("part_export").write(part, output, depsgraph()):
+                print(f"sardf: {warning}")
+            return [output]
+        path, scene = sources.find(options)
+        made = sardf.load(path) if scene is None else sardf.Scene.from_json(json.dumps(scene))
+        (made.save if options.format == "json" else made.povray)(str(output))
+    except (sardf.Error, addon("part_error").PartError) as error:
+        raise Stop(WRONG_INPUT, str(error)) from error
+    except OSError as error:
+        raise Stop(FAILED, f"{output}: cannot be written: {error}") from error
+    return [output]
+
+
+def main(words, command="render"):
+    """Run with a list of command-line words; returns the exit code."""
+    program = f"blender -c sardf {command}" if __package__ else "headless.py"
+    try:
+        options = arguments.parse(words, command, program)
+        options.command = command
         if importlib.util.find_spec("bpy") is None:
             raise Stop(FAILED, "run this in Blender, or with a Python that has the bpy module")
-        for path in run(options):
+        for path in (export if command == "export" else run)(options):
             print(f"sardf: wrote {path}")
         return DONE
     except Stop as stop:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 CHANNELS = ("base_color", "roughness", "metallic", "emission", "fractions")
+NORMAL_MAP = "normal"  # a channel more: the solid's normals in the mesh's tangent space
 GRAIN = "grain_direction"  # the attribute that directs metal's reflections unless one is named
 MESH_SHARE = 0.4  # of the time, for the progress bar: meshing took 0.2 to 0.6 of it on our scenes
 

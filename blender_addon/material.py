@@ -12,6 +12,8 @@ SOCKETS = {
     "metallic": ("Metallic",),
     "emission": ("Emission Color", "Emission"),
 }
+NORMAL = "normal"  # the channel that Principled reads through a Normal Map node
+READ = (*SOCKETS, NORMAL)  # the channels that the material reads
 # What set_tangent makes: from an attribute to the direction of Principled's anisotropy.
 TANGENT_NODES = ("tangent attribute", "tangent in world", "tangent", "anisotropic")
 ANISOTROPIC = 0.8  # of pure metal
@@ -62,6 +64,29 @@ def assign_images(material, images, glows):
         strength = shader.inputs["Emission Strength"]
         if glows and strength.default_value == 0.0:
             strength.default_value = 1.0
+
+
+def set_normal_map(material, image):
+    """Let Principled's Normal read a tangent-space normal map; None ends that.
+
+    The nodes are made once, where Normal is free. They mean the mesh's first UV map.
+    """
+    tree = material.node_tree
+    names = [node_name(NORMAL), node_name("normal map")]
+    if image is None:
+        for name in filter(tree.nodes.__contains__, names):
+            tree.nodes.remove(tree.nodes[name])
+        return
+    if names[0] not in tree.nodes:
+        shader = next((n for n in tree.nodes if n.type == "BSDF_PRINCIPLED"), None)
+        if shader is None or shader.inputs["Normal"].is_linked:
+            return
+        source = _image_node(tree, NORMAL, (-700, -1200))
+        bent = _node(tree, "ShaderNodeNormalMap", "normal map", (-400, -1200))
+        bent.space = "TANGENT"
+        tree.links.new(source.outputs["Color"], bent.inputs["Color"])
+        tree.links.new(bent.outputs["Normal"], shader.inputs["Normal"])
+    tree.nodes[names[0]].image = image
 
 
 def set_tangent(material, attribute):

@@ -27,3 +27,33 @@ step() {
   fi
   return "$status"
 }
+
+# The pinned requirements of the named extras in pyproject.toml; `build` names those of the build.
+pins() {
+  /usr/bin/python3 - "$@" <<'PYTHON'
+import sys
+import tomllib
+
+with open("pyproject.toml", "rb") as file:
+    project = tomllib.load(file)
+groups = {"build": project["build-system"]["requires"]}
+groups |= project["project"]["optional-dependencies"]
+print(*(pin for name in sys.argv[1:] for pin in groups[name]), sep="\n")
+PYTHON
+}
+
+# make_environment FOLDER EXTRA...: a virtual environment with those pins, of the system's Python or
+# of the one that the variable `python` names.
+make_environment() {
+  local folder=$1 of=${python:-/usr/bin/python3} wanted
+  shift
+  wanted="$root $("$of" --version) $(pins "$@")"
+  [ "$(cat "$folder/.pins" 2>/dev/null)" = "$wanted" ] && return
+  # A moved folder or another Python leaves an environment whose programs do not start.
+  if [ "$(head -n 1 "$folder/bin/pip" 2>/dev/null)" != "#!$root/$folder/bin/python3" ] ||
+    ! "$folder/bin/pip" --version >"$logs/pip.log" 2>&1; then
+    step "create ${folder//\//-}" "$of" -m venv --clear "$folder"
+  fi
+  step "fill ${folder//\//-}" "$folder/bin/pip" install $(pins "$@")
+  echo "$wanted" >"$folder/.pins"
+}

@@ -90,8 +90,9 @@ void add_bake(CLI::App& app) {
   command->add_option("--resolution", options->surface.resolution, "Cells along the longest side")
       ->capture_default_str();
   command
-      ->add_option("--channels", options->channels,
-                   "base_color, roughness, metallic, emission, fractions, field, or attributes")
+      ->add_option(
+          "--channels", options->channels,
+          "base_color, roughness, metallic, emission, fractions, field, normal, or attributes")
       ->delimiter(',')
       ->capture_default_str();
   command

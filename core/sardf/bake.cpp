@@ -12,6 +12,7 @@
 #include "sardf/bake_stages.hpp"
 #include "sardf/error.hpp"
 #include "sardf/evaluate.hpp"
+#include "sardf/tangents.hpp"
 
 namespace sardf {
 namespace {
@@ -35,37 +36,71 @@ double diagonal(const Mesh& mesh) {
   return box.diagonal();
 }
 
+int components_of(const BakeChannel& channel) {
+  return channel.tangent_normal ? 3 : static_cast<int>(channel.components.size());
+}
+bool has_normals(std::span<const BakeChannel> channels) {
+  return std::any_of(channels.begin(), channels.end(),
+                     [](const BakeChannel& channel) { return channel.tangent_normal; });
+}
+
+/// What a normal map is made of.
+struct NormalSource {
+  const Evaluator& solid;
+  const Mesh& mesh;
+  const std::vector<std::array<float, 4>>& tangents;
+
+  /// Colours of points[first, first + n) in three rows.
+  void colors(const baking::TilePoints& points, const baking::TexelCorners& corners, size_t first,
+              size_t n, float* const* rows) const {
+    std::array<float, block_size> value;
+    solid.gradient_block(&points.point[0][first], &points.point[1][first], &points.point[2][first],
+                         n, value.data(), rows);
+    baking::tangent_normals(mesh, tangents, corners, first, n, rows);
+  }
+};
+
 /// Some channels of a bake: one evaluator for all their components, and their images.
 class Group {
  public:
   Group(std::span<const BakeChannel> channels, int size) : channels_(channels) {
     std::vector<Expression> outputs;
     for (const BakeChannel& channel : channels) {
-      const int components = static_cast<int>(channel.components.size());
+      const int components = components_of(channel);
       images.push_back({size, size, components, {}});
       images.back().samples.resize(size_t(size) * size * components);
       outputs.insert(outputs.end(), channel.components.begin(), channel.components.end());
     }
-    evaluator_ = Evaluator(outputs);
+    if (!outputs.empty()) evaluator_ = Evaluator(outputs);
     undefined = std::vector<std::atomic<size_t>>(channels.size());
   }
 
-  /// Evaluates the points and writes their texels.
-  void evaluate(const baking::TilePoints& points, double nudge) {
+  bool has_normals() const { return sardf::has_normals(channels_); }
+
+  /// Evaluates the points and writes their texels. `normals` and `corners` are there if
+  /// has_normals.
+  void evaluate(const baking::TilePoints& points, double nudge, const NormalSource* normals,
+                const baking::TexelCorners* corners) {
     thread_local Scratch<float> storage;
-    float* const rows = storage.get(evaluator_.outputs() * block_size);
-    std::vector<float*> out(evaluator_.outputs());
-    for (size_t k = 0; k < out.size(); ++k) out[k] = rows + k * block_size;
+    const size_t outputs = evaluator_.outputs();
+    float* const rows = storage.get((outputs + 3) * block_size);
+    std::vector<float*> out(outputs);
+    for (size_t k = 0; k < outputs; ++k) out[k] = rows + k * block_size;
+    float* const bent[3] = {rows + outputs * block_size, rows + (outputs + 1) * block_size,
+                            rows + (outputs + 2) * block_size};
     for (size_t first = 0; first < points.count; first += block_size) {
       const size_t n = std::min(block_size, points.count - first);
-      evaluator_.block(&points.point[0][first], &points.point[1][first], &points.point[2][first], n,
-                       out.data());
+      if (outputs > 0)
+        evaluator_.block(&points.point[0][first], &points.point[1][first], &points.point[2][first],
+                         n, out.data());
+      if (normals) normals->colors(points, *corners, first, n, bent);
       if (!all_finite(out, n)) repair(points, first, n, nudge, out);
       baking::for_runs(points, first, n, [&](size_t i, size_t count, int x, int y) {
         const float* const* from = out.data();
-        for (Image& image : images) {
-          interleave(from, i - first, count, image.channels, image.at(x, y));
-          from += image.channels;
+        for (size_t k = 0; k < images.size(); ++k) {
+          const bool bends = channels_[k].tangent_normal;
+          interleave(bends ? bent : from, i - first, count, images[k].channels, images[k].at(x, y));
+          if (!bends) from += images[k].channels;
         }
       });
     }
@@ -121,6 +156,7 @@ class Group {
     for (const Vec3& direction : nudges) take(point + nudge * direction);
     size_t row = 0;
     for (size_t channel = 0; channel < channels_.size(); ++channel) {
+      if (channels_[channel].tangent_normal) continue;
       bool lost = false;
       for (int c = 0; c < images[channel].channels; ++c, ++row)
         if (!std::isfinite(out[row][i])) {
@@ -162,14 +198,23 @@ class Baker {
     covered.assign(size_t(layout.size) * layout.size, 0);
   }
 
+  /// Throws Error and Cancelled.
+  void prepare_normals(const Progress& progress) {
+    if (!solid_) throw Error("a normal map can only be baked of a solid");
+    tangents_ = corner_tangents(*layout_.mesh, progress);
+    normals_.emplace(NormalSource{*solid_, *layout_.mesh, tangents_});
+  }
+
   void run(Group& group, const Progress& progress, double from, double to) {
     found = 0;
+    const NormalSource* normals = group.has_normals() ? &*normals_ : nullptr;
     for_tiles(layout_.tiles(), progress, from, to, [&](size_t tile) {
       const auto points = std::make_unique<baking::TilePoints>();
-      baking::find_texels(layout_, tile, *points);
+      const auto corners = normals ? std::make_unique<baking::TexelCorners>() : nullptr;
+      baking::find_texels(layout_, tile, *points, corners.get());
       found += points->count;
       if (solid_) baking::project(*solid_, *points, tolerance_);
-      group.evaluate(*points, nudge_);
+      group.evaluate(*points, nudge_, normals, corners.get());
       baking::for_runs(*points, 0, points->count, [&](size_t, size_t count, int x, int y) {
         std::fill_n(&covered[size_t(y) * layout_.size + x], count, 1);
       });
@@ -182,6 +227,8 @@ class Baker {
  private:
   const baking::UvLayout& layout_;
   std::optional<Evaluator> solid_;
+  std::vector<std::array<float, 4>> tangents_;
+  std::optional<NormalSource> normals_;
   float tolerance_ = 0;
   double nudge_ = 0;
 };
@@ -190,7 +237,7 @@ class Baker {
 size_t count_within(std::span<const BakeChannel> channels, int size, size_t memory) {
   size_t count = 0, bytes = 0;
   for (const BakeChannel& channel : channels) {
-    bytes += sizeof(float) * channel.components.size() * size_t(size) * size_t(size);
+    bytes += sizeof(float) * size_t(components_of(channel)) * size_t(size) * size_t(size);
     if (bytes > memory && count > 0) break;
     ++count;
   }
@@ -203,9 +250,12 @@ BakeReport bake(const TexelMap& texels, const Expression& solid,
                 std::span<const BakeChannel> channels, const BakeConsumer& take,
                 const Progress& progress, size_t memory) {
   for (const BakeChannel& channel : channels)
-    if (channel.components.empty())
+    if (channel.components.empty() && !channel.tangent_normal)
       throw Error("the channel '" + channel.name + "' has no components to bake");
   Baker baker(texels.layout(), solid);
+  // Of no account for the progress: a second for millions of faces.
+  if (has_normals(channels))
+    baker.prepare_normals(progress ? [&](double) { return progress(0); } : Progress());
   BakeReport report;
   for (size_t first = 0; first < channels.size();) {
     const size_t n = count_within(channels.subspan(first), texels.size(), memory);

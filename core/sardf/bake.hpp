@@ -16,9 +16,17 @@
 namespace sardf {
 
 /// One image to bake, e.g. base_color with three components.
+///
+/// tangent_normal: no components; the image is a normal map instead. Its colour 0.5 + 0.5 (a, b, c)
+/// says the solid's unit normal n = -grad f as a direction a t + b s (m x t) + c m, where t with
+/// its sign s is the mesh's tangent (tangents.hpp) and m its normal, interpolated over the
+/// triangles as they are: what renderers' normal maps mean, the y of "OpenGL". Where n is more than
+/// 45 degrees away from m (the gradient is that of another face) or has no direction, the colour is
+/// (0.5, 0.5, 1), the mesh's own normal.
 struct BakeChannel {
   std::string name;
   std::vector<Expression> components;
+  bool tangent_normal = false;
 };
 
 namespace baking {
@@ -75,7 +83,7 @@ using BakeConsumer =
 /// As many channels are baked together (and share their common parts) as have images of at most
 /// `memory` bytes together, at least one; each time again, points are found anew. Runs on all
 /// threads; the result does not depend on their number. Throws Error: a channel without
-/// components, no texel covered. Throws Cancelled.
+/// components, no texel covered, a normal map without `solid` or corner_normals. Throws Cancelled.
 BakeReport bake(const TexelMap& texels, const Expression& solid,
                 std::span<const BakeChannel> channels, const BakeConsumer& take,
                 const Progress& progress = {}, size_t memory = size_t(1) << 30);

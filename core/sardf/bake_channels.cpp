@@ -62,6 +62,8 @@ std::vector<BakeChannel> scene_channels(const Scene& scene, const std::vector<st
       channels.push_back({name, {scene.metallic()}});
     } else if (name == "field") {
       channels.push_back({name, {scene.solid()}});
+    } else if (name == "normal") {
+      channels.push_back({name, {}, true});
     } else if (name == "fractions") {
       append_fractions(scene, channels);
     } else if (!append_attribute(scene, name, channels)) {

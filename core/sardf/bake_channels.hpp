@@ -9,9 +9,9 @@
 
 namespace sardf {
 
-/// base_color (3 components), roughness, metallic, emission (3), fractions, field, and attributes
-/// by name. "fractions" becomes fractions_1, fractions_2, ... of three materials each, in order, 0
-/// where there is none. Throws Error with the nearest name for any other.
+/// base_color (3 components), roughness, metallic, emission (3), fractions, field, normal (3), and
+/// attributes by name. "fractions" becomes fractions_1, fractions_2, ... of three materials each,
+/// in order, 0 where there is none. Throws Error with the nearest name for any other.
 std::vector<BakeChannel> scene_channels(const Scene& scene, const std::vector<std::string>& names);
 
 /// All names that scene_channels accepts for this scene.

@@ -73,6 +73,13 @@ struct TilePoints {
   std::array<float, tile_texels> limit;                  // how far the point may be moved
 };
 
+/// Of which face the texels of a tile are, and with which weights of its four corners; those of one
+/// beside the mesh are of the nearest place on the border.
+struct TexelCorners {
+  std::array<uint32_t, tile_texels> face;
+  std::array<std::array<float, 4>, tile_texels> weight;
+};
+
 /// work(i, count, x, y) for the runs of points[first, first + n) whose texels (x, y), (x + 1, y),
 /// ... of the image lie side by side; i is the first one's index.
 template <class Work>
@@ -87,10 +94,16 @@ void for_runs(const TilePoints& points, size_t first, size_t n, Work work) {
   }
 }
 
-/// Fills `points` for a tile.
-void find_texels(const UvLayout& layout, size_t tile, TilePoints& points);
+/// Fills `points` for a tile, and `corners` if it is given.
+void find_texels(const UvLayout& layout, size_t tile, TilePoints& points,
+                 TexelCorners* corners = nullptr);
 
 /// Moves the points that are farther than `tolerance`, by the field, onto the zero set of `solid`.
 void project(const Evaluator& solid, TilePoints& points, float tolerance);
+
+/// The gradients of points [first, first + n) of a tile, by coordinate, become the colours of the
+/// solid's normal in the mesh's tangent space (bake.hpp).
+void tangent_normals(const Mesh& mesh, std::span<const std::array<float, 4>> tangents,
+                     const TexelCorners& corners, size_t first, size_t n, float* const* rows);
 
 }  // namespace sardf::baking

@@ -93,6 +93,7 @@ struct Triangle {
   Vec3 p, e1, e2;
   Floats normal;
   float limit;
+  uint32_t face, second;  // the second of its corners in the face; the first is 0
 
   double b(double x, double y) const { return ((x - t[0]) * r[1] - (y - t[1]) * r[0]) * inverse; }
   double c(double x, double y) const { return (s[0] * (y - t[1]) - s[1] * (x - t[0])) * inverse; }
@@ -124,8 +125,8 @@ void write_line(TilePoints& out, const Vec3& from, const Vec3& to, size_t n) {
 /// One tile's texels while they are being found.
 class TileRaster {
  public:
-  TileRaster(const UvLayout& layout, size_t tile)
-      : layout_(layout), mesh_(*layout.mesh), box_(image_box(layout)) {
+  TileRaster(const UvLayout& layout, size_t tile, TexelCorners* corners)
+      : layout_(layout), mesh_(*layout.mesh), corners_(corners), box_(image_box(layout)) {
     const int x = static_cast<int>(tile) % layout.tiles_across * tile_size;
     const int y = static_cast<int>(tile) / layout.tiles_across * tile_size;
     box_.limit({x, y, x + tile_size - 1, y + tile_size - 1});
@@ -139,7 +140,8 @@ class TileRaster {
     const double limit = 0.5 * longest_edge(mesh_, face);
     for (size_t k = 1; k < 3; ++k)
       add_triangle({t[0], t[k], t[k + 1]},
-                   {mesh_.vertices[v[0]], mesh_.vertices[v[k]], mesh_.vertices[v[k + 1]]}, limit);
+                   {mesh_.vertices[v[0]], mesh_.vertices[v[k]], mesh_.vertices[v[k + 1]]}, limit,
+                   face, static_cast<uint32_t>(k));
   }
 
   void add_border(uint32_t index) {
@@ -180,7 +182,8 @@ class TileRaster {
  private:
   size_t local(int x, int y) const { return size_t(y - box_.y0) * tile_size + size_t(x - box_.x0); }
 
-  void add_triangle(const std::array<Vec2, 3>& t, const std::array<Vec3, 3>& p, double limit) {
+  void add_triangle(const std::array<Vec2, 3>& t, const std::array<Vec3, 3>& p, double limit,
+                    uint32_t face, uint32_t second) {
     Triangle made;
     made.t = t[0];
     made.s = {t[1][0] - t[0][0], t[1][1] - t[0][1]};
@@ -192,6 +195,8 @@ class TileRaster {
     made.e2 = p[2] - p[0];
     made.normal = floats(unit_or_zero(cross(made.e1, made.e2)));
     made.limit = float(limit);
+    made.face = face;
+    made.second = second;
     const uint32_t number = static_cast<uint32_t>(triangles_.size());
     triangles_.push_back(made);
     const TexelBox box = texels_around(t, edge_margin, box_);
@@ -222,8 +227,30 @@ class TileRaster {
       std::fill_n(&out.normal[axis][out.count], n, on.normal[axis]);
     std::fill_n(&out.limit[out.count], n, on.limit);
     for (size_t i = 0; i < n; ++i) out.texel[out.count + i] = static_cast<uint16_t>(first + i);
+    if (corners_) write_corners(on, x, y, out.count, n);
     out.count += n;
     return static_cast<int>(n);
+  }
+
+  void write_corners(const Triangle& on, int x, int y, size_t at, size_t n) {
+    for (size_t i = 0; i < n; ++i) {
+      const double b = on.b(x + double(i), y), c = on.c(x + double(i), y);
+      corners_->face[at + i] = on.face;
+      auto& weight = corners_->weight[at + i] = {float(1 - b - c), 0, 0, 0};
+      weight[on.second] = float(b);
+      weight[on.second + 1] = float(c);
+    }
+  }
+  /// The place t of a border.
+  void write_corners(const Border& border, double t, size_t at) const {
+    const auto& v = mesh_.faces[border.face];
+    const auto corner = [&v](uint32_t vertex) {
+      return size_t(std::find(v.begin(), v.end() - 1, vertex) - v.begin());
+    };
+    corners_->face[at] = border.face;
+    auto& weight = corners_->weight[at] = {0, 0, 0, 0};
+    weight[corner(border.vertex[0])] += float(1 - t);
+    weight[corner(border.vertex[1])] += float(t);
   }
 
   /// Where on the border, in [0, 1], the point nearest to texel (x, y) lies.
@@ -257,11 +284,13 @@ class TileRaster {
     // Beyond a crease the zero set belongs to another face.
     out.limit[out.count] =
         border.crease ? 0.0f : float(0.5 * (longest_edge(mesh_, border.face) + norm(beyond)));
+    if (corners_) write_corners(border, t, out.count);
     out.texel[out.count++] = static_cast<uint16_t>(i);
   }
 
   const UvLayout& layout_;
   const Mesh& mesh_;
+  TexelCorners* corners_;  // or null
   TexelBox box_;
   std::vector<Triangle> triangles_;
   Numbers on_triangle_, nearest_;             // index of the triangle; of the border
@@ -280,8 +309,8 @@ void fill_bins(UvLayout& layout) {
   });
 }
 
-void find_texels(const UvLayout& layout, size_t tile, TilePoints& points) {
-  TileRaster raster(layout, tile);
+void find_texels(const UvLayout& layout, size_t tile, TilePoints& points, TexelCorners* corners) {
+  TileRaster raster(layout, tile, corners);
   for (const uint32_t face : layout.faces.of(tile)) raster.add_face(face);
   for (const uint32_t border : layout.borders_near.of(tile)) raster.add_border(border);
   raster.collect(points);

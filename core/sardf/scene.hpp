@@ -29,8 +29,8 @@ struct Material {
 
 /// What can be baked of every scene; no attribute has such a name, or one that begins with
 /// "fractions_", the name of an image of three materials.
-inline constexpr std::array<const char*, 6> common_channels{"base_color", "roughness", "metallic",
-                                                            "emission",   "fractions", "field"};
+inline constexpr std::array<const char*, 7> common_channels{
+    "base_color", "roughness", "metallic", "emission", "fractions", "field", "normal"};
 
 /// A scalar (one component) or vector function on the object: a field for each component, or a
 /// rule as for fractions, from which Scene makes the components.

@@ -3,6 +3,7 @@
 import json
 import os
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -75,6 +76,22 @@ def environment(user_folder):
     for kind in ("SCRIPTS", "CONFIG", "DATAFILES"):
         result[f"BLENDER_USER_{kind}"] = f"{user_folder}/{kind.lower()}"
     return result
+
+
+def build_zips(wheel, folder):
+    """The extension's and the older Blenders' zip of a wheel as scripts/setup builds it."""
+    script = ROOT / "scripts/self_contained.py"
+    made = tool(script, wheel, "-o", folder / "wheels")
+    assert made.returncode == 0, made.stderr
+    done = tool(ROOT / "blender_addon/build.py", "--wheel", made.stdout.strip(), "-o", folder)
+    assert done.returncode == 0, done.stderr
+    return [Path(line) for line in done.stdout.splitlines()]
+
+
+def tool(script, *arguments):
+    """Run one of our Python scripts with the Python that runs the tests."""
+    words = [sys.executable, script, *arguments]
+    return subprocess.run([str(word) for word in words], capture_output=True, text=True)
 
 
 def start_script(version, script, *arguments, user_folder, env=None):

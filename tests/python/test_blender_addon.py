@@ -1,21 +1,20 @@
-"""The installable zip: what is in it, and installed in Blender 3.4.1 and bpy 5.0.1."""
+"""The add-on's zips installed in Blender 3.4.1 and bpy 5.0.1."""
 
 import json
 import subprocess
 import sys
 import threading
 import time
-import tomllib
 import zipfile
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from blender_runs import (
-    BPY_PYTHON,
     GRADED_SPHERE,
     SCRIPTS,
     VERSIONS,
+    build_zips,
     environment,
     expected_colors,
     run_script,
@@ -23,70 +22,26 @@ from blender_runs import (
 )
 from repository import ROOT
 
-BUILD = ROOT / "blender_addon/build.py"
 SCREENSHOTS = ROOT / "build/screenshots"
 
 
-def build(output, *wheels):
-    words = [word for wheel in wheels for word in ("--wheel", str(wheel))]
-    return subprocess.run(
-        [sys.executable, str(BUILD), *words, "-o", str(output)], capture_output=True, text=True
-    )
-
-
 @pytest.fixture(scope="module")
-def wheel():
+def zips(tmp_path_factory):
+    """Of the wheel that scripts/setup built: {Blender's version: the zip that it wants}."""
     wheels = list((ROOT / "build/dist").glob("sardf-*.whl"))
     assert len(wheels) == 1, "scripts/setup builds one wheel"
-    return wheels[0]
-
-
-@pytest.fixture(scope="module")
-def zip_file(wheel, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("dist")
-    done = build(folder, wheel)
-    assert done.returncode == 0, done.stderr
-    (path,) = folder.iterdir()
-    assert done.stdout.strip() == str(path)
-    return path
-
-
-def test_zip_is_extension_and_addon_at_once(zip_file, wheel, tmp_path):
-    with zipfile.ZipFile(zip_file) as archive:
-        names = archive.namelist()
-        manifest = tomllib.loads(archive.read("sardf_blender/blender_manifest.toml").decode())
-    assert {name.split("/")[0] for name in names} == {"sardf_blender"}
-    assert manifest["wheels"] == [f"./wheels/{wheel.name}"]
-    assert f"sardf_blender/wheels/{wheel.name}" in names
-    assert "sardf_blender/vendor/sardf/__init__.py" in names
-    compiled = [n for n in names if "/vendor/" in n and n.endswith(".so")]
-    assert [name.split("/")[-1].split(".")[0] for name in compiled] == ["_core"]
-    assert not [name for name in names if "__pycache__" in name or name.endswith("/build.py")]
-    tool = next(ROOT.glob(".venv-bpy/lib/*/site-packages/bpy/*/scripts/**/cli/blender_ext.py"))
-    done = subprocess.run(
-        [str(BPY_PYTHON), str(tool), "validate", str(zip_file)], capture_output=True, text=True
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-    build(tmp_path, wheel)
-    assert (tmp_path / zip_file.name).read_bytes() == zip_file.read_bytes()
-
-
-def test_zip_refuses_wheels_that_do_not_fit(wheel, tmp_path):
-    for name in ("sardf-9.9.9-cp311-cp311-linux_x86_64.whl", "other-0.1.0-py3-none-any.whl"):
-        (tmp_path / name).write_bytes(wheel.read_bytes())
-        done = build(tmp_path / "dist", tmp_path / name)
-        assert done.returncode == 2
-        assert name in done.stderr
-    assert build(tmp_path / "dist", tmp_path / "missing.whl").returncode == 2
-    assert not (tmp_path / "dist").exists()
+    extension, legacy = build_zips(wheels[0], tmp_path_factory.mktemp("dist"))
+    return {"3.4.1": legacy, "5.0.1": extension}
 
 
 @pytest.mark.parametrize("version", VERSIONS)
-def test_installed_zip_bakes_rebakes_and_renders(version, zip_file, tmp_path):
+def test_installed_zip_bakes_rebakes_and_renders(version, zips, tmp_path):
     scene = write_scene(tmp_path, GRADED_SPHERE)
     result_file = tmp_path / "result.json"
     script = SCRIPTS / "install_addon.py"
-    done = run_script(version, script, zip_file, scene, result_file, user_folder=tmp_path / "user")
+    done = run_script(
+        version, script, zips[version], scene, result_file, user_folder=tmp_path / "user"
+    )
     assert result_file.is_file(), done.stdout + done.stderr
     result = json.loads(result_file.read_text())
     assert result["enabled"]
@@ -107,11 +62,11 @@ def test_installed_zip_bakes_rebakes_and_renders(version, zip_file, tmp_path):
 
 
 @pytest.fixture(scope="module")
-def window(zip_file, tmp_path_factory):
+def window(zips, tmp_path_factory):
     """The installed add-on driven in a window of Blender 3.4.1; what gui_bake.py found."""
     folder = tmp_path_factory.mktemp("window")
     user = folder / "user"
-    with zipfile.ZipFile(zip_file) as archive:
+    with zipfile.ZipFile(zips["3.4.1"]) as archive:
         archive.extractall(user / "scripts/addons")
     SCREENSHOTS.mkdir(parents=True, exist_ok=True)
     scene = write_scene(folder, GRADED_SPHERE)

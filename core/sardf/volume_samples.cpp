@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "sardf/error.hpp"
@@ -225,6 +227,16 @@ class Sampler {
 
   void count(size_t samples) { pulse_(double(done_ += samples) / double(grid_.size())); }
 
+  // work(first sample, how many) for each row of a block.
+  template <class RowWork>
+  void for_rows(const Block& block, const RowWork& work) const {
+    for (int z = block.first[2]; z < block.last[2]; ++z) {
+      for (int y = block.first[1]; y < block.last[1]; ++y) {
+        work(number({block.first[0], y, z}), size_t(block.last[0] - block.first[0]));
+      }
+    }
+  }
+
   std::array<float, 3> steps_in(const Block& block) const {
     std::array<float, 3> steps{};
     const std::array<size_t, 3> next{1, size_t(grid_.counts[0]),
@@ -232,10 +244,18 @@ class Sampler {
     for (int axis = 0; axis < 3; ++axis) {
       Block with_next = block;
       with_next.last[axis] = std::min(block.last[axis], grid_.counts[axis] - 1);
-      for_samples(with_next, [&](const Index&, size_t i) {
-        const float step = std::abs(samples_.field[i + next[axis]] - samples_.field[i]);
-        steps[axis] = std::max(steps[axis], step);
+      // The bits of floats that are not negative are in the floats' order, and their maximum is
+      // taken of many at once.
+      uint32_t largest = 0;
+      if (with_next.last[0] == with_next.first[0]) continue;
+      for_rows(with_next, [&](size_t first, size_t n) {
+        const float* here = &samples_.field[first];
+        const float* there = here + next[axis];
+        for (size_t i = 0; i < n; ++i) {
+          largest = std::max(largest, std::bit_cast<uint32_t>(std::abs(there[i] - here[i])));
+        }
       });
+      steps[axis] = std::bit_cast<float>(largest);
     }
     return steps;
   }
@@ -283,56 +303,59 @@ class Sampler {
 
   // The samples of the block that get a colour; the colours of all of them are set to 0.
   std::vector<size_t> wanted_in(const Block& block) {
-    // Whether samples are inside, one more on each side, then whether cubes are to be coloured.
-    constexpr int edge = block_edge + 2;
-    std::array<uint8_t, size_t(edge) * edge * edge> inside, cubes;
+    for_rows(block, [&](size_t first, size_t n) {
+      std::fill_n(&samples_.colors[4 * first], 4 * n, 0.0f);
+    });
     const auto place = [&](const Index& at) {
-      return size_t(at[0] - block.first[0] + 1) +
-             edge *
-                 (size_t(at[1] - block.first[1] + 1) + edge * size_t(at[2] - block.first[2] + 1));
+      return size_t(at[0] - block.first[0] + 1) + step_y * size_t(at[1] - block.first[1] + 1) +
+             step_z * size_t(at[2] - block.first[2] + 1);
     };
+    // Whether samples are inside; one more on each side, unless the grid ends there.
     Block around = block;
     for (int axis = 0; axis < 3; ++axis) {
-      --around.first[axis];
-      ++around.last[axis];
+      around.first[axis] = std::max(block.first[axis] - 1, 0);
+      around.last[axis] = std::min(block.last[axis] + 1, grid_.counts[axis]);
     }
+    Bytes inside{};
     size_t inside_count = 0;
     for_samples(around, [&](const Index& at, size_t i) {
-      bool in_grid = true;
-      for (int axis = 0; axis < 3; ++axis) {
-        in_grid = in_grid && at[axis] >= 0 && at[axis] < grid_.counts[axis];
-      }
-      inside_count += inside[place(at)] = in_grid && samples_.field[i] >= 0;
+      inside_count += inside[place(at)] = samples_.field[i] >= 0;
     });
-    for_samples(block,
-                [&](const Index&, size_t i) { std::fill_n(&samples_.colors[4 * i], 4, 0.0f); });
-    if (inside_count == 0 || (colored_ == Colored::surface && inside_count == around.size()))
+    if (inside_count == 0 || (colored_ == Colored::surface && inside_count == inside.size())) {
       return {};
-    // Each cube by its lowest corner.
-    Block lowest = block;
-    for (int& first : lowest.first) --first;
-    for_samples(lowest, [&](const Index& at, size_t) {
-      cubes[place(at)] = is_colored(&inside[place(at)], edge);
-    });
+    }
+    const Bytes cubes = colored_cubes(inside);
+    // Of the cubes that a sample is a corner of, the lowest one counts for all.
+    const Bytes corners = joined(cubes, std::bit_or());
     std::vector<size_t> wanted;
     for_samples(block, [&](const Index& at, size_t i) {
-      if (any_of_eight(&cubes[place(at)], -1, edge)) wanted.push_back(i);
+      if (corners[place(at) - 1 - step_y - step_z]) wanted.push_back(i);
     });
     return wanted;
   }
 
-  // Of the eight bytes in a cube, one of whose corners is `corner`, the sum.
-  static int sum_of_eight(const uint8_t* corner, std::ptrdiff_t x, std::ptrdiff_t edge) {
-    const std::ptrdiff_t y = x * edge, z = y * edge;
-    return corner[0] + corner[x] + corner[y] + corner[x + y] + corner[z] + corner[x + z] +
-           corner[y + z] + corner[x + y + z];
+  // A byte for each sample of a block and of one more on each side.
+  static constexpr size_t step_y = block_edge + 2, step_z = step_y * step_y;
+  using Bytes = std::array<uint8_t, step_y * step_z>;
+
+  // Each byte with the other seven of the cube of eight that begins there.
+  template <class Join>
+  static Bytes joined(Bytes bytes, Join join) {
+    for (const size_t step : {size_t(1), step_y, step_z}) {
+      for (size_t i = 0; i + step < bytes.size(); ++i) {
+        bytes[i] = uint8_t(join(bytes[i], bytes[i + step]));
+      }
+    }
+    return bytes;
   }
-  static bool any_of_eight(const uint8_t* corner, std::ptrdiff_t x, std::ptrdiff_t edge) {
-    return sum_of_eight(corner, x, edge) > 0;
-  }
-  bool is_colored(const uint8_t* lowest, std::ptrdiff_t edge) const {
-    const int inside = sum_of_eight(lowest, 1, edge);
-    return inside > 0 && (colored_ == Colored::inside || inside < 8);
+
+  // By their lowest corners.
+  Bytes colored_cubes(const Bytes& inside) const {
+    Bytes any = joined(inside, std::bit_or());
+    if (colored_ == Colored::inside) return any;
+    const Bytes all = joined(inside, std::bit_and());
+    for (size_t i = 0; i < any.size(); ++i) any[i] = uint8_t(any[i] & ~all[i]);
+    return any;
   }
 
   const SampleGrid& grid_;

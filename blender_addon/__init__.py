@@ -15,6 +15,8 @@ studio       soft lights and a neutral world around the object
 render       Cycles settings of each look
 assemble     all of the above for one part; used by the operators and by headless.py alike
 properties operators panel    the user interface
+preview and preview_*         parts shown in the viewport while they are made: samples from the core
+                              in a worker thread (preview_volume, no bpy), one shader, legend, probe
 """
 
 bl_info = {
@@ -29,16 +31,22 @@ bl_info = {
 
 
 def register():
-    from . import operators, panel, properties
+    from . import operators, panel, preview, preview_panel, preview_settings, properties
 
     properties.register()
     operators.register()
     panel.register()
+    preview_settings.register()
+    preview_panel.register()
+    preview.register()
 
 
 def unregister():
-    from . import operators, panel, properties
+    from . import operators, panel, preview, preview_panel, preview_settings, properties
 
+    preview.unregister()
+    preview_panel.unregister()
+    preview_settings.unregister()
     panel.unregister()
     operators.unregister()
     properties.unregister()

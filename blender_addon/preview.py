@@ -17,6 +17,7 @@ from . import assemble, core, preview_draw, preview_legend, preview_stand_in, pr
 
 SOON = 0.01  # seconds from a change to the question what there is now; changes in between are one
 TICK = 0.02  # seconds between two looks at the worker thread
+AT_ONCE = 0.015  # seconds that a coarse picture is waited for, so that one redraw shows it
 
 
 class Part:
@@ -49,23 +50,27 @@ class Preview:
         key: its name, any hashable. source: a scene file's text, the pathlib.Path of one, or a
         sardf.Scene; an exception in its place is shown in the panel, and the part stays as it was.
         matrix: of the part's coordinates (scene units) in the world. Where only the matrix differs
-        nothing is sampled again.
+        nothing is sampled again. Returns whether anything differs.
         """
         settings = bpy.context.scene.sardf_preview
-        part = self.parts.setdefault(key, Part(matrix))
+        is_new = key not in self.parts
+        part = self.parts.setdefault(key, Part(matrix.copy()))
+        differs = is_new or part.matrix != matrix
         part.matrix = matrix.copy()
         if isinstance(source, Exception):
+            differs = differs or part.error != str(source)
             part.error = str(source)
-            return
+            return differs
         preview_stand_in.move(key, matrix)
         wish = self._wish(source, part, settings)
         if wish == part.wish:
-            return
+            return differs
         sampler = self._worker()
         if sampler is not None:
             part.wish = wish
             sampler.request(key, wish)
             _start(_tick, TICK)
+        return True
 
     def hide(self, key):
         """Forget a part."""
@@ -87,6 +92,11 @@ class Preview:
     def busy(self):
         return self._sampler is not None and self._sampler.busy
 
+    def wait(self, seconds):
+        """Until the thread has made something, if it makes anything, but not longer."""
+        if self.busy:
+            self._sampler.wait(seconds)
+
     def poll(self):
         """Take over what the thread has made; whether there was anything."""
         results = self._sampler.take() if self._sampler is not None else []
@@ -98,8 +108,8 @@ class Preview:
     def finish(self):
         """Make all that is open at once, waiting: for scripts and where there are no timers."""
         while self.busy:
-            if not self.poll():
-                self._sampler.wait()
+            self.wait(0.1)
+            self.poll()
 
     def plane(self, part, settings):
         """The section in a part's coordinates, (a, b, c, d); zeros: there is none."""
@@ -171,7 +181,7 @@ class Preview:
     def _accept(self, key, part, result):
         if isinstance(result, Exception):
             part.error = str(result)
-            if not isinstance(result, core.load().Error):
+            if not isinstance(result, (core.load().Error, preview_volume.PreviewError)):
                 traceback.print_exception(result)  # ours to mend: show where
             return
         part.error = ""
@@ -202,29 +212,36 @@ def from_file(scene, _depsgraph):
 providers = [from_file]
 
 
-def schedule():
+def schedule(*_):
     """Something may have changed: ask the providers soon. Cheap, and safe in handlers."""
     _start(_collect, SOON)
 
 
+def settings_changed(_settings=None, _context=None):
+    """The same after a change in how parts are shown: views are drawn again in any case."""
+    _start(_redraw, SOON)
+    schedule()
+
+
 def collect():
-    """Ask the providers now, and show what they say."""
+    """Ask the providers now, and show what they say. Returns whether anything differs."""
     scene = bpy.context.scene
     if not scene.sardf_preview.enabled:
         CURRENT.stop()
         _set_drawing(False)
-        return
+        return False
     if bpy.app.background:
         CURRENT.no_gpu = "Blender runs without a window"
     depsgraph = bpy.context.evaluated_depsgraph_get()
     found = {}
     for provider in providers:
         found |= provider(scene, depsgraph)
-    for key in [key for key in CURRENT.parts if key not in found]:
+    gone = [key for key in CURRENT.parts if key not in found]
+    for key in gone:
         CURRENT.hide(key)
-    for key, (source, matrix) in found.items():
-        CURRENT.update(key, source, matrix)
+    differ = [CURRENT.update(key, source, matrix) for key, (source, matrix) in found.items()]
     _set_drawing(True)
+    return bool(gone) or any(differ)
 
 
 def update_now():
@@ -241,8 +258,10 @@ def _start(timer, seconds):
 
 
 def _collect():
-    collect()
-    _redraw()
+    if collect():
+        CURRENT.wait(AT_ONCE)
+        CURRENT.poll()
+        _redraw()
 
 
 def _tick():
@@ -291,7 +310,7 @@ def depsgraph_changed(scene, _depsgraph):
 @bpy.app.handlers.persistent
 def content_replaced(*_):
     """After another file was loaded, after undo and redo: whatever was known may be gone."""
-    schedule()
+    settings_changed()
 
 
 @bpy.app.handlers.persistent
@@ -318,7 +337,7 @@ def register():
 def unregister():
     for name, function in HANDLERS:
         getattr(bpy.app.handlers, name).remove(function)
-    for timer in (_collect, _tick):
+    for timer in (_collect, _tick, _redraw):
         if bpy.app.timers.is_registered(timer):
             bpy.app.timers.unregister(timer)
     CURRENT.stop()

@@ -3,7 +3,7 @@
 
 import bpy
 
-from . import preview
+from . import preview, preview_volume
 from .preview_volume import COLOR, FRACTION
 
 QUALITIES = ("64", "96", "128", "192", "256")
@@ -14,26 +14,22 @@ def _shown_names(_settings, _context, text):
     for part in preview.CURRENT.parts.values():
         if part.scene is not None:
             names += [FRACTION + name for name in part.scene.materials]
-            names += part.scene.attributes
+            names += preview_volume.numbers_of(part.scene)
     return [name for name in dict.fromkeys(names) if text.lower() in name.lower()]
-
-
-def _changed(_settings, _context):
-    preview.schedule()
 
 
 class SardfPreviewSettings(bpy.types.PropertyGroup):
     enabled: bpy.props.BoolProperty(
         name="Preview",
         description="Show the parts in the 3-D viewport while they are made",
-        update=_changed,
+        update=preview.settings_changed,
     )
     quality: bpy.props.EnumProperty(
         name="Quality",
         description="Samples along a part's longest side once nothing changes any more",
         items=[(n, n, f"{n} samples along the longest side") for n in QUALITIES],
         default="128",
-        update=_changed,
+        update=preview.settings_changed,
     )
     show: bpy.props.StringProperty(
         name="Show",
@@ -43,45 +39,45 @@ class SardfPreviewSettings(bpy.types.PropertyGroup):
         ),
         default=COLOR,
         search=_shown_names,
-        update=_changed,
+        update=preview.settings_changed,
     )
     legend: bpy.props.BoolProperty(
         name="Legend",
         description="Show the materials' colours, the colour bar and a scale bar in the viewport",
         default=True,
-        update=_changed,
+        update=preview.settings_changed,
     )
     stripes: bpy.props.BoolProperty(
         name="Lines",
         description=(
             "Draw lines of equal distance from the surface on the cut, and the colour bar in bands"
         ),
-        update=_changed,
+        update=preview.settings_changed,
     )
     spacing: bpy.props.FloatProperty(
         name="Distance",
         description="Distance between two lines, in the part's units; 0 is a fiftieth of its size",
         default=0.0,
         min=0.0,
-        update=_changed,
+        update=preview.settings_changed,
     )
     section: bpy.props.BoolProperty(
         name="Section",
         description="Cut the preview open; the parts themselves stay whole",
-        update=_changed,
+        update=preview.settings_changed,
     )
     section_object: bpy.props.PointerProperty(
         name="Plane",
         description="Cuts away what lies above this object's x-y plane, on the side of its z axis",
         type=bpy.types.Object,
-        update=_changed,
+        update=preview.settings_changed,
     )
     section_axis: bpy.props.EnumProperty(
         name="Axis",
         description="The part's own axis that the section cuts across",
         items=[(axis, axis, f"Across {axis}") for axis in "XYZ"],
         default="Y",
-        update=_changed,
+        update=preview.settings_changed,
     )
     section_position: bpy.props.FloatProperty(
         name="Position",
@@ -90,13 +86,13 @@ class SardfPreviewSettings(bpy.types.PropertyGroup):
         min=0.0,
         max=1.0,
         subtype="FACTOR",
-        update=_changed,
+        update=preview.settings_changed,
     )
     section_flip: bpy.props.BoolProperty(
         name="Other Side",
         description="Cut away the lower side",
         default=True,
-        update=_changed,
+        update=preview.settings_changed,
     )
 
 

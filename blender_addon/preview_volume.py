@@ -32,6 +32,25 @@ def channel_of(show):
     return show, ""
 
 
+class PreviewError(Exception):
+    """What is wished for cannot be shown, in one sentence."""
+
+
+def numbers_of(scene):
+    """The names of the scene's attributes that are one number at each point."""
+    lo, hi = scene.bounds
+    point = [[(a + b) / 2 for a, b in zip(lo, hi, strict=True)]]
+    values = {name: evaluate(point) for name, evaluate in scene.attributes.items()}
+    return [name for name, of in values.items() if not isinstance(of, dict) and of.ndim == 1]
+
+
+def _check(scene, wish):
+    if wish.channel in scene.attributes and wish.channel not in numbers_of(scene):
+        raise PreviewError(
+            f"'{wish.channel}' has several components; attributes that are one number can be shown"
+        )
+
+
 @dataclass(frozen=True)
 class Wish:
     """What to sample of a scene.
@@ -58,8 +77,8 @@ class Volume:
 
     counts: samples along x, y and z. field: float32, x fastest, in multiples of `unit` scene
     units, no steeper than one unit for each diagonal of a cell. color: float32, four for each
-    sample, linear, times alpha. range: of the first component, or None. latency: seconds since
-    the wish.
+    sample, linear, times alpha. range: of the number that is shown, or of the first component, or
+    None. latency: seconds since the wish.
     """
 
     scene: Any
@@ -128,7 +147,7 @@ def make_volume(scene, wish, resolution, progress=None):
         field=values,
         unit=unit,
         color=samples["color"].reshape(-1),
-        range=samples["range"],
+        range=(0.0, 1.0) if wish.channel == "fractions" else samples["range"],
         seconds=now - begun,
         latency=now - wish.made,
     )
@@ -164,11 +183,15 @@ def make_stand_in(sardf, scene, wish, progress=None):
         colors = np.ones((len(vertices), 4))
         colors[:, :3] = scene.fractions(vertices) @ np.array(list(scene.material_colors.values()))
     elif wish.channel == "fractions":
-        column = scene.materials.index(wish.material)
-        values = scene.fractions(vertices)[:, column]
-    else:
+        if wish.material not in scene.materials:
+            raise PreviewError(f"the part has no material '{wish.material}'")
+        values = scene.fractions(vertices)[:, scene.materials.index(wish.material)]
+    elif wish.channel in scene.attributes:
         values = scene.attributes[wish.channel](vertices)
+    else:
+        raise PreviewError(f"the part has no attribute '{wish.channel}'")
     span = None if values is None else (float(np.nanmin(values)), float(np.nanmax(values)))
+    span = (0.0, 1.0) if wish.channel == "fractions" else span
     latency = time.monotonic() - wish.made
     return StandIn(scene, wish, vertices, faces, colors, values, span, latency)
 
@@ -298,6 +321,7 @@ class Sampler:
             with self._changed:
                 if key in self._open:  # not forgotten meanwhile
                     self._scenes[key] = (origin, task.scene)
+        _check(task.scene, task.wish)
         if task.wish.plane is not None:
             task.is_fine = True
             return make_stand_in(self._sardf, task.scene, task.wish, go_on)

@@ -84,7 +84,7 @@ struct Batch {
 
 /// What the blocks add to the result's figures.
 struct Figures {
-  std::array<float, 3> steps{};  // largest difference of neighbours along each axis
+  float steepness = 0;
   Interval range{infinity, -infinity};
 };
 
@@ -116,19 +116,16 @@ class Sampler {
     pulse_.stage(1);
     std::vector<Figures> figures(blocks_.size());
     for_blocks(color, [&](const Evaluator& program, size_t i) {
-      figures[i].steps = steps_in(blocks_[i]);
+      figures[i].steepness = steepness_in(blocks_[i]);
       if (samples_.colors) figures[i].range = color_block(program, blocks_[i]);
       count(blocks_[i].size());
     });
-    std::array<float, 3> steps{};
     for (const Figures& f : figures) {
-      for (int axis = 0; axis < 3; ++axis) steps[axis] = std::max(steps[axis], f.steps[axis]);
+      samples_.steepness = std::max(samples_.steepness, double(f.steepness));
       samples_.range = {std::min(samples_.range.lo, f.range.lo),
                         std::max(samples_.range.hi, f.range.hi)};
     }
-    Vec3 slope;
-    for (int axis = 0; axis < 3; ++axis) slope[axis] = double(steps[axis]) / grid_.cell(axis);
-    samples_.steepness = norm(slope);
+    samples_.steepness *= 1 + 0x1p-20;  // rounding
   }
 
   VolumeSamples result() { return std::move(samples_); }
@@ -237,27 +234,48 @@ class Sampler {
     }
   }
 
-  std::array<float, 3> steps_in(const Block& block) const {
-    std::array<float, 3> steps{};
-    const std::array<size_t, 3> next{1, size_t(grid_.counts[0]),
-                                     size_t(grid_.counts[0]) * size_t(grid_.counts[1])};
-    for (int axis = 0; axis < 3; ++axis) {
-      Block with_next = block;
-      with_next.last[axis] = std::min(block.last[axis], grid_.counts[axis] - 1);
-      // The bits of floats that are not negative are in the floats' order, and their maximum is
-      // taken of many at once.
-      uint32_t largest = 0;
-      if (with_next.last[0] == with_next.first[0]) continue;
-      for_rows(with_next, [&](size_t first, size_t n) {
-        const float* here = &samples_.field[first];
-        const float* there = here + next[axis];
-        for (size_t i = 0; i < n; ++i) {
-          largest = std::max(largest, std::bit_cast<uint32_t>(std::abs(there[i] - here[i])));
-        }
-      });
-      steps[axis] = std::bit_cast<float>(largest);
+  // Interpolation's derivative along an axis lies, in a cube of eight samples, between the slopes
+  // of its four edges along that axis.
+  float steepness_in(const Block& block) const {
+    constexpr size_t edge = block_edge + 1, size = edge * edge * edge;
+    constexpr size_t step[3] = {1, edge, edge * edge};
+    std::array<float, size> value{}, slope{}, square{};
+    // One more on each upper side; beyond the grid its last samples go on, as textures do.
+    const int nx = grid_.counts[0];
+    for (size_t row = 0; row < edge * edge; ++row) {
+      const int y = std::min(block.first[1] + int(row % edge), grid_.counts[1] - 1);
+      const int z = std::min(block.first[2] + int(row / edge), grid_.counts[2] - 1);
+      const size_t n = size_t(std::min(nx - block.first[0], int(edge)));
+      float* to =
+          std::copy_n(&samples_.field[number({block.first[0], y, z})], n, &value[edge * row]);
+      std::fill_n(to, edge - n, to[-1]);
     }
-    return steps;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const float per_cell = float(1 / grid_.cell(int(axis)));
+      for (size_t i = 0; i + step[axis] < size; ++i) {
+        slope[i] = std::abs(value[i + step[axis]] - value[i]) * per_cell;
+      }
+      for (size_t other = 0; other < 3; ++other) {
+        if (other == axis) continue;
+        for (size_t i = 0; i + step[other] < size; ++i) {
+          slope[i] = slope[i] < slope[i + step[other]] ? slope[i + step[other]] : slope[i];
+        }
+      }
+      for (size_t i = 0; i < size; ++i) square[i] += slope[i] * slope[i];
+    }
+    // The bits of floats that are not negative are in the floats' order, and the largest is found
+    // among many at once.
+    uint32_t largest = 0;
+    const size_t nx_here = size_t(block.last[0] - block.first[0]);
+    for (int z = 0; z < block.last[2] - block.first[2]; ++z) {
+      for (int y = 0; y < block.last[1] - block.first[1]; ++y) {
+        const float* row = &square[edge * (size_t(y) + edge * size_t(z))];
+        for (size_t x = 0; x < nx_here; ++x) {
+          largest = std::max(largest, std::bit_cast<uint32_t>(row[x]));
+        }
+      }
+    }
+    return std::sqrt(std::bit_cast<float>(largest));
   }
 
   Interval color_block(const Evaluator& above, const Block& block) {

@@ -4,75 +4,31 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
-#include <functional>
 #include <optional>
 
 #include "sardf/error.hpp"
 #include "sardf/pulse.hpp"
 #include "sardf/short_number.hpp"
 #include "sardf/shorten.hpp"
+#include "sardf/volume_blocks.hpp"
 
 namespace sardf {
 
 namespace {
 
-using Index = std::array<int, 3>;
+using namespace volume;
 
 constexpr int most_along = 2048;
 constexpr size_t most_samples = size_t(1) << 28;
 
-// Samples along the edge of the blocks that are shared among threads, and of the larger ones that
-// these start from.
-constexpr int block_edge = 16, large_edge = 4 * block_edge;
+// Samples along the edge of the blocks whose programs others start from.
+constexpr int large_edge = 4 * block_edge;
 // Programs of blocks are shortened where they are longer than this, and those of their octants
 // where they are longer than that: less costs less than finding out (bench/bench_volume.cpp).
 constexpr size_t long_for_block = 8, long_for_octant = 64;
 // So few samples are not worth a program of their own.
 constexpr size_t few_samples = 256;
-
-/// The samples from first up to last, exclusively.
-struct Block {
-  Index first, last;
-
-  size_t size() const {
-    size_t n = 1;
-    for (int axis = 0; axis < 3; ++axis) n *= size_t(last[axis] - first[axis]);
-    return n;
-  }
-};
-
-/// A grid divided into blocks, in order, x fastest.
-class Blocks {
- public:
-  Blocks(const Block& all, int edge) : all_(all), edge_(edge) {
-    for (int axis = 0; axis < 3; ++axis) {
-      across_[axis] = (all.last[axis] - all.first[axis] + edge - 1) / edge;
-    }
-  }
-  size_t size() const { return size_t(across_[0]) * across_[1] * across_[2]; }
-  Block operator[](size_t i) const {
-    const Index at{int(i % across_[0]), int(i / across_[0] % across_[1]),
-                   int(i / across_[0] / across_[1])};
-    Block block;
-    for (int axis = 0; axis < 3; ++axis) {
-      block.first[axis] = all_.first[axis] + at[axis] * edge_;
-      block.last[axis] = std::min(block.first[axis] + edge_, all_.last[axis]);
-    }
-    return block;
-  }
-  /// The number of the block that holds a sample.
-  size_t number(const Index& sample) const {
-    return size_t(sample[0] / edge_) +
-           size_t(across_[0]) * (sample[1] / edge_ + size_t(across_[1]) * (sample[2] / edge_));
-  }
-
- private:
-  Block all_;
-  int edge_;
-  std::array<int, 3> across_;
-};
 
 /// Samples on their way through an evaluator.
 struct Batch {
@@ -116,7 +72,7 @@ class Sampler {
     pulse_.stage(1);
     std::vector<Figures> figures(blocks_.size());
     for_blocks(color, [&](const Evaluator& program, size_t i) {
-      figures[i].steepness = steepness_in(blocks_[i]);
+      figures[i].steepness = steepness_in(grid_, samples_.field.get(), blocks_[i]);
       if (samples_.colors) figures[i].range = color_block(program, blocks_[i]);
       count(blocks_[i].size());
     });
@@ -194,7 +150,7 @@ class Sampler {
       count(batch.n);
       batch.n = 0;
     };
-    for_samples(block, [&](const Index& at, size_t to) { add(at, to, batch, flush); });
+    for_samples(grid_, block, [&](const Index& at, size_t to) { add(at, to, batch, flush); });
     if (batch.n > 0) flush();
   }
 
@@ -207,79 +163,13 @@ class Sampler {
     if (++batch.n == Batch::capacity) flush();
   }
 
-  template <class Each>
-  void for_samples(const Block& block, const Each& each) const {
-    for (int z = block.first[2]; z < block.last[2]; ++z) {
-      for (int y = block.first[1]; y < block.last[1]; ++y) {
-        size_t to = number({block.first[0], y, z});
-        for (int x = block.first[0]; x < block.last[0]; ++x) each({x, y, z}, to++);
-      }
-    }
-  }
-
-  size_t number(const Index& at) const {
-    return size_t(at[0]) +
-           size_t(grid_.counts[0]) * (size_t(at[1]) + size_t(grid_.counts[1]) * size_t(at[2]));
-  }
-
   void count(size_t samples) { pulse_(double(done_ += samples) / double(grid_.size())); }
 
-  // work(first sample, how many) for each row of a block.
-  template <class RowWork>
-  void for_rows(const Block& block, const RowWork& work) const {
-    for (int z = block.first[2]; z < block.last[2]; ++z) {
-      for (int y = block.first[1]; y < block.last[1]; ++y) {
-        work(number({block.first[0], y, z}), size_t(block.last[0] - block.first[0]));
-      }
-    }
-  }
-
-  // Interpolation's derivative along an axis lies, in a cube of eight samples, between the slopes
-  // of its four edges along that axis.
-  float steepness_in(const Block& block) const {
-    constexpr size_t edge = block_edge + 1, size = edge * edge * edge;
-    constexpr size_t step[3] = {1, edge, edge * edge};
-    std::array<float, size> value{}, slope{}, square{};
-    // One more on each upper side; beyond the grid its last samples go on, as textures do.
-    const int nx = grid_.counts[0];
-    for (size_t row = 0; row < edge * edge; ++row) {
-      const int y = std::min(block.first[1] + int(row % edge), grid_.counts[1] - 1);
-      const int z = std::min(block.first[2] + int(row / edge), grid_.counts[2] - 1);
-      const size_t n = size_t(std::min(nx - block.first[0], int(edge)));
-      float* to =
-          std::copy_n(&samples_.field[number({block.first[0], y, z})], n, &value[edge * row]);
-      std::fill_n(to, edge - n, to[-1]);
-    }
-    for (size_t axis = 0; axis < 3; ++axis) {
-      const float per_cell = float(1 / grid_.cell(int(axis)));
-      for (size_t i = 0; i + step[axis] < size; ++i) {
-        slope[i] = std::abs(value[i + step[axis]] - value[i]) * per_cell;
-      }
-      for (size_t other = 0; other < 3; ++other) {
-        if (other == axis) continue;
-        for (size_t i = 0; i + step[other] < size; ++i) {
-          slope[i] = slope[i] < slope[i + step[other]] ? slope[i + step[other]] : slope[i];
-        }
-      }
-      for (size_t i = 0; i < size; ++i) square[i] += slope[i] * slope[i];
-    }
-    // The bits of floats that are not negative are in the floats' order, and the largest is found
-    // among many at once.
-    uint32_t largest = 0;
-    const size_t nx_here = size_t(block.last[0] - block.first[0]);
-    for (int z = 0; z < block.last[2] - block.first[2]; ++z) {
-      for (int y = 0; y < block.last[1] - block.first[1]; ++y) {
-        const float* row = &square[edge * (size_t(y) + edge * size_t(z))];
-        for (size_t x = 0; x < nx_here; ++x) {
-          largest = std::max(largest, std::bit_cast<uint32_t>(row[x]));
-        }
-      }
-    }
-    return std::sqrt(std::bit_cast<float>(largest));
-  }
-
   Interval color_block(const Evaluator& above, const Block& block) {
-    std::vector<size_t> wanted = wanted_in(block);
+    for_rows(grid_, block, [&](size_t first, size_t n) {
+      std::fill_n(&samples_.colors[4 * first], 4 * n, 0.0f);
+    });
+    const std::vector<size_t> wanted = colored_in(grid_, samples_.field.get(), colored_, block);
     Interval range{infinity, -infinity};
     if (wanted.empty()) return range;
     std::optional<Evaluator> shorter;
@@ -317,63 +207,6 @@ class Sampler {
       range = {std::min(range.lo, double(color[0])), std::max(range.hi, double(color[0]))};
     }
     batch.n = 0;
-  }
-
-  // The samples of the block that get a colour; the colours of all of them are set to 0.
-  std::vector<size_t> wanted_in(const Block& block) {
-    for_rows(block, [&](size_t first, size_t n) {
-      std::fill_n(&samples_.colors[4 * first], 4 * n, 0.0f);
-    });
-    const auto place = [&](const Index& at) {
-      return size_t(at[0] - block.first[0] + 1) + step_y * size_t(at[1] - block.first[1] + 1) +
-             step_z * size_t(at[2] - block.first[2] + 1);
-    };
-    // Whether samples are inside; one more on each side, unless the grid ends there.
-    Block around = block;
-    for (int axis = 0; axis < 3; ++axis) {
-      around.first[axis] = std::max(block.first[axis] - 1, 0);
-      around.last[axis] = std::min(block.last[axis] + 1, grid_.counts[axis]);
-    }
-    Bytes inside{};
-    size_t inside_count = 0;
-    for_samples(around, [&](const Index& at, size_t i) {
-      inside_count += inside[place(at)] = samples_.field[i] >= 0;
-    });
-    if (inside_count == 0 || (colored_ == Colored::surface && inside_count == inside.size())) {
-      return {};
-    }
-    const Bytes cubes = colored_cubes(inside);
-    // Of the cubes that a sample is a corner of, the lowest one counts for all.
-    const Bytes corners = joined(cubes, std::bit_or());
-    std::vector<size_t> wanted;
-    for_samples(block, [&](const Index& at, size_t i) {
-      if (corners[place(at) - 1 - step_y - step_z]) wanted.push_back(i);
-    });
-    return wanted;
-  }
-
-  // A byte for each sample of a block and of one more on each side.
-  static constexpr size_t step_y = block_edge + 2, step_z = step_y * step_y;
-  using Bytes = std::array<uint8_t, step_y * step_z>;
-
-  // Each byte with the other seven of the cube of eight that begins there.
-  template <class Join>
-  static Bytes joined(Bytes bytes, Join join) {
-    for (const size_t step : {size_t(1), step_y, step_z}) {
-      for (size_t i = 0; i + step < bytes.size(); ++i) {
-        bytes[i] = uint8_t(join(bytes[i], bytes[i + step]));
-      }
-    }
-    return bytes;
-  }
-
-  // By their lowest corners.
-  Bytes colored_cubes(const Bytes& inside) const {
-    Bytes any = joined(inside, std::bit_or());
-    if (colored_ == Colored::inside) return any;
-    const Bytes all = joined(inside, std::bit_and());
-    for (size_t i = 0; i < any.size(); ++i) any[i] = uint8_t(any[i] & ~all[i]);
-    return any;
   }
 
   const SampleGrid& grid_;

@@ -22,7 +22,7 @@ from mathutils import Matrix, Vector
 SCENE, FOLDER = sys.argv[sys.argv.index("--") + 1 :]
 TICK = 0.02  # seconds between two looks at Blender's state
 LIMIT = 60.0  # seconds to wait for anything at most; llvmpipe on a busy machine is slow
-result = {"errors": [], "drags": []}
+result = {"errors": [], "drags": [], "drag sampling": []}
 drawn = {}  # key of a part -> (wish, samples along its longest side) that was drawn last
 
 
@@ -235,6 +235,7 @@ def dragged(preview):
             lambda begun=begun: drawn["dragged"][0].made > begun, "the drag to be seen"
         )
         result["drags"].append(time.monotonic() - begun)
+        result["drag sampling"].append(preview.CURRENT.parts["dragged"].latency)
     begun = time.monotonic()
     yield from until(lambda: drawn["dragged"][1] >= 128, "the fine picture")
     result["seconds to the fine picture"] = time.monotonic() - begun

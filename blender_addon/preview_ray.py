@@ -6,6 +6,7 @@ import numpy as np
 STEPS = 400  # samples along a ray through the part's bounds
 ROUNDS = 3  # each divides the interval with the surface by 64
 PARTS = 64
+SURFACE = 1e-6  # of the part's diagonal: a smaller distance is none
 
 
 def first_hit(scene, origin, direction, plane):
@@ -49,7 +50,11 @@ def lines(scene, point):
     here = np.array([point])
     unit = scene.units
     place = ", ".join(f"{c:.4g}" for c in point)
-    told = [f"({place}) {unit}", f"distance {scene.solid(here)[0]:.4g} {unit}"]
+    distance = scene.solid(here)[0]
+    lo, hi = map(np.asarray, scene.bounds)
+    if abs(distance) < SURFACE * np.linalg.norm(hi - lo):
+        distance = 0.0
+    told = [f"({place}) {unit}", f"distance {distance:.4g} {unit}"]
     fractions = scene.fractions(here)[0]
     for name, share in zip(scene.materials, fractions, strict=True):
         if share >= 5e-4 or len(scene.materials) <= 3:

@@ -137,7 +137,7 @@ void main() {
   if (on_cut) {
     if (part.line_spacing > 0.0 && part.value_range.x >= part.value_range.y) {
       float line = line_at(hit, part.plane.xyz, part.pixel * seen.w);
-      color = mix(color, vec3(dot(color, vec3(0.333)) > 0.2 ? 0.0 : 0.6), 0.75 * line);
+      color = mix(color, vec3(dot(color, vec3(0.333)) > 0.05 ? 0.0 : 0.6), 0.75 * line);
     }
   } else {
     vec3 normal = normalize((part.to_view_normal * vec4(outward(hit), 0.0)).xyz);

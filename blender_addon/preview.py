@@ -39,6 +39,7 @@ class Preview:
 
     def __init__(self):
         self.parts = {}  # key -> Part
+        self.scene = ""  # the name of the Blender scene that has them
         self.error = ""  # why nothing can be shown at all
         self.no_gpu = ""  # why meshes stand in for textures; "" while shaders work
         self._sampler = None
@@ -86,7 +87,7 @@ class Preview:
         if self._sampler is not None:
             self._sampler.stop()
         self._sampler = self._painter = None
-        self.error = ""
+        self.error = self.no_gpu = ""
 
     @property
     def busy(self):
@@ -134,28 +135,32 @@ class Preview:
     def draw(self, context):
         """All parts, into the view that is being drawn."""
         settings = context.scene.sardf_preview
+        for part in self.parts.values():
+            # What has no extent in some direction cannot be turned back to samples.
+            if part.volume is not None and part.matrix.determinant() and self._prepare(part):
+                self._painter.draw(
+                    part.textures,
+                    part.matrix,
+                    self.plane(part, settings),
+                    part.range or (0.0, 0.0),
+                    self.spacing(part, settings),
+                    context.region.height,
+                )
+
+    def _prepare(self, part):
+        """Bring the shader and a part's samples onto the graphics card; whether that worked."""
+        if part.textures is not None and part.textures.volume is part.volume:
+            return True
         try:
             if self._painter is None:
                 self._painter = preview_draw.Painter()
-            for part in self.parts.values():
-                if part.volume is not None:
-                    self._draw_part(part, settings, context.region.height)
+            part.textures = self._painter.upload(part.volume)
         except Exception as error:  # whatever a driver says: the stand-in needs no driver
             self.no_gpu = str(error) or type(error).__name__
-            traceback.print_exc()
-            schedule()
-
-    def _draw_part(self, part, settings, height):
-        if part.textures is None or part.textures.volume is not part.volume:
-            part.textures = self._painter.upload(part.volume)
-        self._painter.draw(
-            part.textures,
-            part.matrix,
-            self.plane(part, settings),
-            part.range or (0.0, 0.0),
-            self.spacing(part, settings),
-            height,
-        )
+            settings_changed()
+            return False
+        part.volume.field = part.volume.color = None  # they may be large
+        return True
 
     def _wish(self, source, part, settings):
         channel, material = preview_volume.channel_of(settings.show)
@@ -189,6 +194,7 @@ class Preview:
         part.latency = result.latency
         part.range = result.range if result.wish.channel != "base_color" else None
         if isinstance(result, preview_volume.StandIn):
+            part.volume = part.textures = None
             preview_stand_in.show(bpy.context.scene, key, result, part.matrix)
         else:
             preview_stand_in.remove(key)
@@ -236,6 +242,7 @@ def collect():
     found = {}
     for provider in providers:
         found |= provider(scene, depsgraph)
+    CURRENT.scene = scene.name
     gone = [key for key in CURRENT.parts if key not in found]
     for key in gone:
         CURRENT.hide(key)
@@ -289,15 +296,18 @@ def _set_drawing(wanted):
         bpy.types.SpaceView3D.draw_handler_remove(_drawing.pop(), "WINDOW")
 
 
+def _is_shown(scene):
+    return scene.sardf_preview.enabled and scene.name == CURRENT.scene
+
+
 def _draw():
-    if bpy.context.scene.sardf_preview.enabled and not CURRENT.no_gpu:
+    if _is_shown(bpy.context.scene) and not CURRENT.no_gpu:
         CURRENT.draw(bpy.context)
 
 
 def _draw_legend():
-    settings = bpy.context.scene.sardf_preview
-    if settings.enabled:
-        preview_legend.draw(bpy.context, settings, CURRENT)
+    if _is_shown(bpy.context.scene):
+        preview_legend.draw(bpy.context, bpy.context.scene.sardf_preview, CURRENT)
 
 
 @bpy.app.handlers.persistent

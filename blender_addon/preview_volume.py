@@ -75,10 +75,10 @@ class Wish:
 class Volume:
     """Samples of the drawn solid and its colours over the box from lo to hi (scene units).
 
-    counts: samples along x, y and z. field: float32, x fastest, in multiples of `unit` scene
-    units, no steeper than one unit for each diagonal of a cell. color: float32, four for each
-    sample, linear, times alpha. range: of the number that is shown, or of the first component, or
-    None. latency: seconds since the wish.
+    counts: samples along x, y and z. field: float32, x fastest, in multiples of `unit` scene units,
+    no steeper than one unit for each diagonal of a cell. color: float32, four for each sample,
+    linear, times alpha. Both are None once they are textures. range: of the number that is shown,
+    or of the first component, or None. latency: seconds since the wish.
     """
 
     scene: Any
@@ -86,9 +86,9 @@ class Volume:
     lo: np.ndarray
     hi: np.ndarray
     counts: tuple
-    field: np.ndarray
+    field: np.ndarray | None
     unit: float
-    color: np.ndarray
+    color: np.ndarray | None
     range: tuple | None
     seconds: float
     latency: float

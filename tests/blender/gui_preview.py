@@ -108,6 +108,7 @@ def scenario():
     yield from moved(preview)
     yield from hidden(preview)
     yield from probed()
+    yield from replaced(preview)
     yield from dragged(preview)
     yield from interrupted(preview)
 
@@ -137,6 +138,7 @@ def shown():
     screenshot("preview_whole")
     # Beside the axes, which are drawn where nothing hides them.
     result["center"], result["beside"] = pixel((0, 0, 0)), pixel((5.6, 0, 0.6))
+    result["red end"] = pixel((-4, 0, 0.6))
     result["within"] = pixel((4.7, 0, 0.6))
 
 
@@ -213,6 +215,32 @@ def probed():
     result["probe"] = list(operator.lines)
     subprocess.run(["xdotool", "key", "Escape"], check=True)
     yield from until(lambda: SARDF_OT_probe.running is None, "Esc to end the probe", 20)
+
+
+def replaced(preview):
+    """Where the graphics card refuses, a mesh stands in; once it works again, none does."""
+    from sardf_blender import preview_draw, preview_stand_in
+
+    def refuse(_self):
+        raise RuntimeError("no shader today")
+
+    create, preview_draw.Painter.__init__ = preview_draw.Painter.__init__, refuse
+    settings = bpy.context.scene.sardf_preview
+    settings.enabled = False
+    yield from until(lambda: not preview.CURRENT.parts, "the preview to be off")
+    settings.enabled = True
+    yield from until(lambda: preview_stand_in.find(SCENE) is not None, "the mesh")
+    result["no gpu"] = preview.CURRENT.no_gpu
+    view()[1].spaces.active.shading.color_type = "VERTEX"
+    for _ in range(20):
+        yield
+    screenshot("preview_stand_in")
+    preview_draw.Painter.__init__ = create
+    settings.enabled = False
+    yield from until(lambda: not preview.CURRENT.parts, "the preview to be off")
+    result["left of the mesh"] = preview_stand_in.find(SCENE) is not None
+    settings.enabled = True
+    yield from settled()
 
 
 def dragged(preview):

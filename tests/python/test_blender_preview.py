@@ -132,6 +132,13 @@ def test_other_objects_hide_it_and_are_hidden(window):
     assert np.abs(at("preview_behind_cube", window["center"]) - part).max() > 10
 
 
+def test_a_mesh_stands_in_where_there_is_no_shader(window):
+    assert window["no gpu"] == "no shader today"
+    assert not window["left of the mesh"]
+    red = at("preview_stand_in", window["red end"])
+    assert red[0] > 1.3 * red[2]
+
+
 def test_the_probe_tells_what_is_under_the_cursor(window):
     place, distance, red, steel = window["probe"]
     x, y, z = json.loads("[" + place[1 : place.index(")")] + "]")

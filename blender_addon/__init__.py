@@ -30,6 +30,9 @@ scene_text        scene files as data, and how an imported one keeps its words
 import_numbers import_shapes import_fractions part_import part_export    from and to files
 part_bake         a part's scene through job and assemble, in animations too
 part_objects part_lists part_presets part_operators part_status part_panel    the user interface
+
+preview and preview_*    parts shown in the viewport while they are made: samples from the core in a
+                         worker thread (preview_volume, no bpy), one shader, legend, probe
 """
 
 import importlib
@@ -45,25 +48,6 @@ bl_info = {
 }
 
 
-MODULES = (  # in the order in which Blender must know them
-    "properties",
-    "part_properties",
-    "part_objects",
-    "part_status",
-    "operators",
-    "part_lists",
-    "part_operators",
-    "panel",
-    "part_panel",
-    "commands",
-)
-
-
-def register():
-    for name in MODULES:
-        importlib.import_module(f".{name}", __package__).register()
-
-
-def unregister():
-    for name in reversed(MODULES):
-        importlib.import_module(f".{name}", __package__).unregister()
+properties operators panel    the user interface
+preview and preview_*         parts shown in the viewport while they are made: samples from the core
+                              in a worker thread (preview_volume, no bpy), one shader, legend, probe

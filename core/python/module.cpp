@@ -10,4 +10,5 @@ PYBIND11_MODULE(_core, m) {
   sardf::bind_constructors(m);
   sardf::bind_meshes(m);
   sardf::bind_scenes(m);
+  sardf::bind_volume_samples(m);
 }

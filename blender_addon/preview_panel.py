@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The preview's part of the tab "sardf", and the buttons in it."""
+
+import textwrap
+from typing import ClassVar
+
+import bpy
+
+from . import preview, preview_legend, preview_probe
+
+LINE = 28  # characters that fit into the sidebar at its default width
+
+
+class SARDF_OT_preview_update(bpy.types.Operator):
+    bl_idname = "sardf.preview_update"
+    bl_label = "Update Preview"
+    bl_description = "Show the parts as they are now, and wait for it"
+
+    @classmethod
+    def poll(cls, context):
+        return context.scene.sardf_preview.enabled
+
+    def execute(self, _context):
+        preview.update_now()
+        wrong = preview_legend.messages(preview.CURRENT)
+        if wrong:
+            self.report({"ERROR"}, "; ".join(wrong))
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+
+class SARDF_OT_section_plane(bpy.types.Operator):
+    bl_idname = "sardf.preview_section_plane"
+    bl_label = "Add Section Plane"
+    bl_description = "Add an empty object that cuts the preview open: move and turn it"
+    bl_options: ClassVar[set] = {"UNDO"}
+
+    def execute(self, context):
+        plane = bpy.data.objects.new("section plane", None)
+        plane.empty_display_type = "SINGLE_ARROW"
+        plane.empty_display_size = max(1.0, context.scene.cursor.location.length)
+        plane.location = context.scene.cursor.location
+        plane.rotation_euler = (1.5707963, 0.0, 0.0)  # its z axis towards the viewer from the front
+        context.collection.objects.link(plane)
+        settings = context.scene.sardf_preview
+        settings.section_object = plane
+        settings.section = True
+        return {"FINISHED"}
+
+
+class SARDF_PT_preview(bpy.types.Panel):
+    bl_idname = "SARDF_PT_preview"
+    bl_label = "Preview"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "sardf"
+    bl_parent_id = "SARDF_PT_main"
+
+    def draw_header(self, context):
+        self.layout.prop(context.scene.sardf_preview, "enabled", text="")
+
+    def draw(self, context):
+        settings = context.scene.sardf_preview
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        layout.active = settings.enabled
+        self._draw_state()
+        column = layout.column()
+        column.prop(settings, "quality")
+        column.prop(settings, "show")
+        column.prop(settings, "legend")
+        column.prop(settings, "stripes")
+        if settings.stripes:
+            column.prop(settings, "spacing")
+        column = layout.column()
+        column.prop(settings, "section")
+        if settings.section:
+            column.prop(settings, "section_object")
+            if settings.section_object is None:
+                column.prop(settings, "section_axis")
+                column.prop(settings, "section_position")
+                column.prop(settings, "section_flip")
+                column.operator("sardf.preview_section_plane", icon="EMPTY_SINGLE_ARROW")
+        layout.operator("sardf.probe", icon="EYEDROPPER")
+
+    def _draw_state(self):
+        current = preview.CURRENT
+        column = self.layout.column(align=True)
+        column.alert = True
+        for message in preview_legend.messages(current):
+            for row in textwrap.wrap(message, LINE, break_long_words=True):
+                column.label(text=row)
+        if current.no_gpu and not bpy.app.background:
+            for row in textwrap.wrap(f"Coarse meshes are shown: {current.no_gpu}", LINE):
+                column.label(text=row)
+
+
+CLASSES = (
+    SARDF_OT_preview_update,
+    SARDF_OT_section_plane,
+    preview_probe.SARDF_OT_probe,
+    SARDF_PT_preview,
+)
+
+
+def register():
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+
+
+def unregister():
+    probe = preview_probe.SARDF_OT_probe.running
+    if probe is not None:
+        probe.end(bpy.context)
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -1,0 +1,332 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Drives the installed add-on's preview in a window.
+
+Run in an X server: blender --factory-startup -P gui_preview.py -- SCENE FOLDER. Writes
+preview.json and screenshots into FOLDER. Each step waits for what it expects, no longer than its
+limit.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import threading
+import time
+import traceback
+from pathlib import Path
+
+import bpy
+from bpy_extras.view3d_utils import location_3d_to_region_2d
+from mathutils import Matrix, Vector
+
+SCENE, FOLDER = sys.argv[sys.argv.index("--") + 1 :]
+TICK = 0.02  # seconds between two looks at Blender's state
+LIMIT = 60.0  # seconds to wait for anything at most; llvmpipe on a busy machine is slow
+result = {"errors": [], "drags": [], "drag sampling": []}
+drawn = {}  # key of a part -> (wish, samples along its longest side) that was drawn last
+
+
+class TimeOut(Exception):
+    pass
+
+
+def until(condition, what, limit=LIMIT):
+    """Give Blender time until `condition()` holds."""
+    end = time.monotonic() + limit
+    while not condition():
+        if time.monotonic() > end:
+            screenshot("preview_time_out")
+            raise TimeOut(f"waited {limit:.0f} s for {what}")
+        yield
+
+
+def view():
+    window = bpy.context.window_manager.windows[0]
+    area = max(
+        (a for a in window.screen.areas if a.type == "VIEW_3D"), key=lambda a: a.width * a.height
+    )
+    return window, area, {region.type: region for region in area.regions}
+
+
+def screenshot(name):
+    subprocess.run(["import", "-window", "root", f"{FOLDER}/{name}.png"], check=True)
+
+
+def pixel(point):
+    """[column, row] of a point of the world on a screenshot."""
+    window, area, regions = view()
+    region = regions["WINDOW"]
+    x, y = location_3d_to_region_2d(region, area.spaces.active.region_3d, Vector(point))
+    return [region.x + x, window.height - (region.y + y)]
+
+
+def note_draws(preview):
+    """Remember what was drawn, and count."""
+    original = preview.Preview.draw
+
+    def draw(self, context):
+        original(self, context)
+        drawn["count"] = drawn.get("count", 0) + 1
+        for key, part in self.parts.items():
+            if part.textures is not None:
+                drawn[key] = (part.textures.volume.wish, max(part.textures.volume.counts))
+
+    preview.Preview.draw = draw
+
+
+def redrawn():
+    """Wait until the view was drawn again, with everything that is in it now, and shown."""
+    from sardf_blender import preview
+
+    for _ in range(2):
+        yield
+        preview.collect()  # what the debounced timer does, now
+        before = drawn.get("count", 0)
+        view()[1].tag_redraw()
+        yield from until(lambda before=before: drawn.get("count", 0) > before, "a redraw")
+    yield
+
+
+def settled():
+    """Wait until everything is sampled finely and drawn."""
+    from sardf_blender import preview
+
+    preview.collect()
+    yield from until(lambda: not preview.CURRENT.busy, "the fine samples")
+    yield from redrawn()
+
+
+def scenario():
+    bpy.ops.preferences.addon_enable(module="sardf_blender")
+    bpy.context.preferences.view.smooth_view = 0  # milliseconds of a flight to a new view
+    bpy.context.preferences.system.viewport_aa = "OFF"  # else a view is drawn many times
+    from sardf_blender import preview
+
+    note_draws(preview)
+    yield from shown()
+    yield from cut()
+    yield from moved(preview)
+    yield from hidden(preview)
+    yield from probed()
+    yield from replaced(preview)
+    yield from dragged(preview)
+    yield from interrupted(preview)
+
+
+def look_from_the_front(distance):
+    window, area, regions = view()
+    with bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"]):
+        bpy.ops.view3d.view_axis(type="FRONT")
+    space = area.spaces.active
+    space.region_3d.view_location = (0, 0, 0)
+    space.region_3d.view_distance = distance
+    space.overlay.show_floor = space.overlay.show_axis_x = space.overlay.show_cursor = False
+
+
+def shown():
+    look_from_the_front(22)
+    bpy.data.objects["Cube"].location = (0, 0, 40)
+    bpy.context.view_layer.objects.active = None
+    settings = bpy.context.scene.sardf
+    settings.filepath = SCENE
+    begun = time.monotonic()
+    bpy.context.scene.sardf_preview.enabled = True
+    yield from until(lambda: SCENE in drawn, "the first picture")
+    result["seconds to the first picture"] = time.monotonic() - begun
+    yield from settled()
+    result["finest"] = drawn[SCENE][1]
+    screenshot("preview_whole")
+    # Beside the axes, which are drawn where nothing hides them.
+    result["center"], result["beside"] = pixel((0, 0, 0)), pixel((5.6, 0, 0.6))
+    result["red end"] = pixel((-4, 0, 0.6))
+    result["within"] = pixel((4.7, 0, 0.6))
+
+
+def cut():
+    """The half towards the viewer is taken away, then less of it."""
+    settings = bpy.context.scene.sardf_preview
+    settings.section = True
+    settings.section_axis, settings.section_position, settings.section_flip = "Y", 0.5, True
+    yield from settled()
+    screenshot("preview_cut")
+    points = [(x / 4, 0.0, z / 4) for x in range(-18, 19) for z in range(-18, 19)]
+    result["cut"] = [[p, pixel(p)] for p in points if Vector(p).length < 4.7]
+    settings.section_position = 0.1
+    yield from redrawn()
+    screenshot("preview_less_cut")
+    settings.stripes, settings.spacing, settings.section_position = True, 1.0, 0.5
+    yield from settled()
+    screenshot("preview_lines")
+    # In front of the red feature, where no line of whole distance is: at 0.5 and at 1.
+    result["between lines"] = pixel((4.5, 0, 0))
+    result["on a line"] = pixel((4.0, 0, 0))
+    settings.stripes = settings.section = False
+
+
+def moved(preview):
+    """By its matrix alone: nothing is sampled again."""
+    wish = drawn[SCENE][0]
+    source = Path(SCENE)
+    place = Matrix.Translation((7, 0, 0))
+    preview.providers[:] = [lambda _scene, _depsgraph: {SCENE: (source, place)}]
+    yield from settled()
+    screenshot("preview_moved")
+    result["sampled again"] = preview.CURRENT.parts[SCENE].wish.made > drawn[SCENE][0].made
+    result["wish kept"] = wish.source == drawn[SCENE][0].source
+    result["new center"] = pixel((7, 0, 0.6))
+    result["old end"] = pixel((-4, 0, 0.6))
+    place = Matrix.Diagonal((-1, 1, 0.5, 1))  # mirrored and flat
+    preview.providers[:] = [lambda _scene, _depsgraph: {SCENE: (source, place)}]
+    yield from settled()
+    screenshot("preview_mirrored")
+    result["mirrored"] = [pixel((-4, 0, 0)), pixel((4, 0, 0)), pixel((0.6, 0, 3.5))]
+    place = Matrix()
+    preview.providers[:] = [lambda _scene, _depsgraph: {SCENE: (source, place)}]
+    yield from settled()
+
+
+def hidden(preview):
+    """By a cube in front, which one behind does not do."""
+    cube = bpy.data.objects["Cube"]
+    for name, y in (("preview_behind_cube", -8), ("preview_before_cube", 8)):
+        cube.location = (0, y, 0)
+        yield from redrawn()
+        screenshot(name)
+    cube.location = (0, 0, 40)
+    yield from redrawn()
+
+
+def probed():
+    from sardf_blender.preview_probe import SARDF_OT_probe
+
+    window, area, regions = view()
+    with bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"]):
+        bpy.ops.sardf.probe("INVOKE_DEFAULT")
+    yield from until(lambda: SARDF_OT_probe.running is not None, "the probe")
+    operator = SARDF_OT_probe.running
+    column, row = pixel((0, 0, 0))
+    for nudge in (1, 0):
+        command = ["xdotool", "mousemove", str(int(column) + nudge), str(int(row))]
+        subprocess.run(command, check=True)
+        yield
+    yield from until(lambda: operator.lines, "the probe to read")
+    yield from redrawn()
+    screenshot("preview_probe")
+    result["probe"] = list(operator.lines)
+    subprocess.run(["xdotool", "key", "Escape"], check=True)
+    yield from until(lambda: SARDF_OT_probe.running is None, "Esc to end the probe", 20)
+
+
+def replaced(preview):
+    """Where the graphics card refuses, a mesh stands in; once it works again, none does."""
+    from sardf_blender import preview_draw, preview_stand_in
+
+    def refuse(_self):
+        raise RuntimeError("no shader today")
+
+    create, preview_draw.Painter.__init__ = preview_draw.Painter.__init__, refuse
+    settings = bpy.context.scene.sardf_preview
+    settings.enabled = False
+    yield from until(lambda: not preview.CURRENT.parts, "the preview to be off")
+    settings.enabled = True
+    yield from until(lambda: preview_stand_in.find(SCENE) is not None, "the mesh")
+    result["no gpu"] = preview.CURRENT.no_gpu
+    view()[1].spaces.active.shading.color_type = "VERTEX"
+    for _ in range(20):
+        yield
+    screenshot("preview_stand_in")
+    preview_draw.Painter.__init__ = create
+    settings.enabled = False
+    yield from until(lambda: not preview.CURRENT.parts, "the preview to be off")
+    result["left of the mesh"] = preview_stand_in.find(SCENE) is not None
+    settings.enabled = True
+    yield from settled()
+
+
+def dragged(preview):
+    """An object is moved in small steps; the part's size follows it. How long until it is seen."""
+    handle = bpy.data.objects.new("handle", None)
+    bpy.context.collection.objects.link(handle)
+    text = json.loads(Path(SCENE).read_text())
+
+    def follow(scene, _depsgraph):
+        text["fields"]["ball"]["sphere"]["radius"] = 3 + scene.objects["handle"].location.x
+        return {"dragged": (json.dumps(text), Matrix())}
+
+    preview.providers[:] = [follow]
+    yield from settled()
+    for step in range(12):
+        handle.location.x = 0.1 * (step + 1)
+        begun = time.monotonic()
+        # Blender sees the change when this timer's turn is over; ours are asked by its handler.
+        yield from until(
+            lambda begun=begun: drawn["dragged"][0].made > begun, "the drag to be seen"
+        )
+        result["drags"].append(time.monotonic() - begun)
+        result["drag sampling"].append(preview.CURRENT.parts["dragged"].latency)
+    begun = time.monotonic()
+    yield from until(lambda: drawn["dragged"][1] >= 128, "the fine picture")
+    result["seconds to the fine picture"] = time.monotonic() - begun
+    screenshot("preview_dragged")
+    result["dragged end"] = [pixel((3.9, 0, 0.6)), pixel((4.5, 0, 0.6))]
+
+
+def threads():
+    return [each.name for each in threading.enumerate() if each.name == "sardf preview"]
+
+
+def busy(preview):
+    """Wait until the worker has long work to do."""
+    settings = bpy.context.scene.sardf_preview
+    settings.enabled = True
+    settings.quality = "256" if settings.quality != "256" else "192"
+    yield from until(lambda: preview.CURRENT.busy, "the worker to start")
+
+
+def interrupted(preview):
+    """Undo, another file and disabling the add-on while the worker runs."""
+    window, area, regions = view()
+    with bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"]):
+        bpy.ops.ed.undo_push(message="before")
+        bpy.ops.ed.undo_push(message="after")
+        yield from busy(preview)
+        bpy.ops.ed.undo()
+    yield from settled()
+    result["threads at work"] = threads()
+    yield from busy(preview)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, load_ui=False)
+    yield from until(lambda: not threads(), "the thread to end after another file", 20)
+    preview.providers[:] = [preview.from_file]
+    bpy.context.scene.sardf.filepath = SCENE
+    yield from busy(preview)
+    begun = time.monotonic()
+    bpy.ops.preferences.addon_disable(module="sardf_blender")
+    result["seconds to disable"] = time.monotonic() - begun
+    yield
+    result["threads at the end"] = threads()
+    for _ in range(5):
+        view()[1].tag_redraw()
+        yield
+
+
+def tick(steps):
+    try:
+        next(steps)
+        return TICK
+    except StopIteration:
+        leave()
+    except Exception:
+        traceback.print_exc()
+        result["errors"].append(traceback.format_exc())
+        leave()
+
+
+def leave():
+    Path(FOLDER, "preview.json").write_text(json.dumps(result, indent=1))
+    sys.stdout.flush()
+    os._exit(0)  # quitting asks about unsaved changes
+
+
+bpy.context.preferences.view.show_splash = False  # before the window is drawn for the first time
+STEPS = scenario()
+bpy.app.timers.register(lambda: tick(STEPS), first_interval=1.0, persistent=True)

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The preview without a window; run as: ... -- ZIP SCENE RESULT.json
+
+In Blender 4.2 and later the zip is installed as an extension, before that as an add-on.
+"""
+
+import importlib
+import json
+import sys
+import threading
+from pathlib import Path
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+
+def install(zip_file):
+    if hasattr(bpy.ops.extensions, "package_install_files") and bpy.app.version >= (4, 2):
+        bpy.ops.extensions.package_install_files(
+            filepath=zip_file, repo="user_default", enable_on_install=True, overwrite=True
+        )
+        return "bl_ext.user_default.sardf_blender"
+    bpy.ops.preferences.addon_install(overwrite=True, filepath=zip_file)
+    bpy.ops.preferences.addon_enable(module="sardf_blender")
+    return "sardf_blender"
+
+
+def contents():
+    return {kind: [x.name for x in getattr(bpy.data, kind)] for kind in ("objects", "meshes")}
+
+
+def mesh_of(item):
+    """Vertices in the world, and their colours, linear."""
+    data = item.data
+    points = np.empty(3 * len(data.vertices), np.float32)
+    data.vertices.foreach_get("co", points)
+    colors = np.empty(4 * len(data.vertices), np.float32)
+    data.color_attributes.active_color.data.foreach_get("color", colors)
+    return points.reshape(-1, 3).tolist(), colors.reshape(-1, 4).tolist()
+
+
+def update_error():
+    try:
+        bpy.ops.sardf.preview_update()
+    except RuntimeError as error:
+        return str(error)
+    return ""
+
+
+def main(zip_file, scene_file, result_file):
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    module = install(zip_file)
+    # The environment of the bpy module has a sardf of its own; the zip's wheel is what we test.
+    sys.path.sort(key=lambda place: "/extensions/.local/" not in place)
+    preview = importlib.import_module(f"{module}.preview")
+    result = {"before": contents()}
+    bpy.context.scene.sardf.filepath = scene_file
+    settings = bpy.context.scene.sardf_preview
+    settings.enabled = True
+    result["error"] = update_error()
+    (item,) = bpy.data.objects
+    result["whole"] = mesh_of(item)
+    result["hidden from renders"] = item.hide_render
+    settings.section, settings.section_axis, settings.section_position = True, "Y", 0.5
+    settings.section_flip = True
+    update_error()
+    result["cut"] = mesh_of(item)
+    settings.section = False
+    settings.show = "fraction of red"
+    update_error()
+    result["fraction"] = mesh_of(item)
+    settings.show = "hardness"
+    result["unknown"] = update_error()
+    settings.show = "colour"
+    matrix = Matrix.Translation((1, 2, 3))
+    source = Path(scene_file).read_text()
+    preview.providers[:] = [lambda _scene, _depsgraph: {scene_file: (source, matrix)}]
+    update_error()
+    result["place"] = list(item.matrix_world.translation)
+    preview.providers[:] = [lambda *_: {scene_file: (ValueError("the part is empty"), matrix)}]
+    result["part's error"] = update_error()
+    settings.enabled = False
+    preview.collect()
+    result["after"] = contents()
+    preview.providers[:] = [preview.from_file]
+    settings.enabled = True
+    update_error()
+    bpy.ops.preferences.addon_disable(module=module)
+    result["disabled"] = contents()
+    result["threads"] = [t.name for t in threading.enumerate() if t.name == "sardf preview"]
+    Path(result_file).write_text(json.dumps(result))
+
+
+main(*sys.argv[sys.argv.index("--") + 1 :])

@@ -1,0 +1,186 @@
+"""The preview without Blender: the worker thread, and rays."""
+
+import json
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+import sardf
+from blender_runs import GRADED_SPHERE, expected_colors, expected_fractions
+from repository import ROOT
+
+sys.path.insert(0, str(ROOT))
+try:
+    from blender_addon import preview_ray, preview_volume
+finally:
+    sys.path.remove(str(ROOT))
+Wish, Sampler = preview_volume.Wish, preview_volume.Sampler
+
+LIMIT = 60.0
+
+
+@pytest.fixture
+def sampler():
+    made = Sampler(sardf)
+    yield made
+    made.stop()
+    assert not made.running
+
+
+def ball(radius=5.0):
+    scene = json.loads(json.dumps(GRADED_SPHERE))
+    scene["fields"]["ball"]["sphere"]["radius"] = radius
+    return json.dumps(scene)
+
+
+def results(sampler, count):
+    """The next results, as (key, result)."""
+    found, end = [], time.monotonic() + LIMIT
+    while len(found) < count:
+        sampler.wait(0.1)
+        found += sampler.take()
+        assert time.monotonic() < end
+    return found
+
+
+def test_coarse_comes_first_and_fine_follows(sampler):
+    sampler.request("ball", Wish(ball(), resolution=96))
+    (key, coarse), (_, fine) = results(sampler, 2)
+    assert key == "ball"
+    assert (max(coarse.counts), max(fine.counts)) == (preview_volume.COARSE, 96)
+    assert fine.scene is coarse.scene
+    assert not sampler.busy
+    assert 0 < coarse.seconds <= coarse.latency < fine.latency
+
+
+def test_volumes_hold_the_ball_and_its_colours(sampler):
+    sampler.request("ball", Wish(ball(), resolution=64, cut=True))
+    fine = results(sampler, 2)[1][1]
+    axes = [
+        lo + (np.arange(n) + 0.5) * cell
+        for lo, n, cell in zip(fine.lo, fine.counts, fine.cell, strict=True)
+    ]
+    z, y, x = np.meshgrid(*reversed(axes), indexing="ij")
+    points = np.stack([x, y, z], axis=-1).reshape(-1, 3)
+    np.testing.assert_allclose(
+        fine.field * fine.unit, 5 - np.linalg.norm(points, axis=-1), atol=1e-5
+    )
+    assert np.abs(np.diff(fine.field.reshape(fine.counts[::-1]), axis=0)).max() <= 1
+    color = fine.color.reshape(-1, 4)
+    inside = fine.field >= 0
+    assert (color[inside][:, 3] == 1).all()
+    np.testing.assert_allclose(color[inside][:, :3], expected_colors(points[inside]), atol=1e-5)
+    # Two samples lie outside on each side, so that the surface lies between samples.
+    assert not inside.reshape(fine.counts[::-1])[:2].any()
+
+
+def test_the_newest_wish_wins(sampler):
+    for radius in np.linspace(3, 6, 40):
+        sampler.request("ball", Wish(ball(radius), resolution=64))
+    last = results(sampler, 1)
+    while sampler.busy:
+        last += results(sampler, 1)
+    assert last[-1][1].wish.source == ball(6.0)
+    assert max(last[-1][1].counts) == 64
+    assert len(last) < 40
+
+
+def test_what_is_new_goes_before_what_is_fine(sampler):
+    sampler.request("large", Wish(ball(), resolution=400, cut=True))
+    results(sampler, 1)
+    time.sleep(preview_volume.QUIET + 0.05)  # the fine picture is at work
+    begun = time.monotonic()
+    sampler.request("small", Wish(ball(2), resolution=32))
+    (key, _), *_ = results(sampler, 1)
+    assert key == "small"
+    assert time.monotonic() - begun < 2
+    (key, fine), *_ = results(sampler, 1)
+    assert (key, max(fine.counts)) == ("large", 400)
+
+
+def test_forgotten_parts_come_no_more(sampler):
+    sampler.request("ball", Wish(ball(), resolution=300))
+    sampler.forget("ball")
+    time.sleep(0.1)
+    assert sampler.take() == []
+    assert not sampler.busy
+
+
+def test_the_thread_ends_at_once():
+    sampler = Sampler(sardf)
+    sampler.request("ball", Wish(ball(), resolution=500, cut=True))
+    results(sampler, 1)
+    time.sleep(preview_volume.QUIET + 0.1)
+    begun = time.monotonic()
+    sampler.stop(limit=LIMIT)
+    assert time.monotonic() - begun < 1  # the core's own limit is 0.1 s; the machine may be busy
+    assert not [t for t in threading.enumerate() if t.name == "sardf preview"]
+
+
+def test_errors_are_handed_over(sampler):
+    sampler.request("bad", Wish('{"sardf": 1, "solid": "nothing"}'))
+    sampler.request("none", Wish(ball(), channel="hardness"))
+    errors = dict(results(sampler, 2))
+    assert "nothing" in str(errors["bad"])
+    assert "there is no channel 'hardness'" in str(errors["none"])
+    assert all(isinstance(error, sardf.Error) for error in errors.values())
+    sampler.request("bad", Wish(ball(), resolution=32))
+    assert results(sampler, 1)[0][1].field.size
+
+
+def test_vectors_are_refused(sampler):
+    scene = dict(GRADED_SPHERE, attributes={"way": {"value": ["= x", "= y", "= z"]}})
+    sampler.request("ball", Wish(json.dumps(scene), channel="way"))
+    error = results(sampler, 1)[0][1]
+    assert isinstance(error, preview_volume.PreviewError)
+    assert "'way' has several components" in str(error)
+
+
+def test_a_mesh_stands_in_where_there_are_no_textures(sampler):
+    sampler.request("ball", Wish(ball(), plane=(0.0, -2.0, 0.0, 0.0)))
+    made = results(sampler, 1)[0][1]
+    assert not sampler.busy
+    assert made.vertices[:, 1].min() > -1e-6
+    on_cut = np.abs(made.vertices[:, 1]) < 1e-6
+    assert on_cut.sum() > 100
+    np.testing.assert_allclose(made.colors[:, :3], expected_colors(made.vertices), atol=1e-9)
+    sampler.request("ball", Wish(ball(), channel="fractions", material="red", plane=(0.0,) * 4))
+    made = results(sampler, 1)[0][1]
+    np.testing.assert_allclose(made.values, expected_fractions(made.vertices)[:, 0], atol=1e-9)
+    assert made.range == (0.0, 1.0)
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return sardf.Scene.from_json(ball())
+
+
+def test_rays_find_the_first_point(scene):
+    nothing = (0.0, 0.0, 0.0, 0.0)
+    for origin, ray, expected in (
+        ((0, -20, 0), (0, 1, 0), (0, -5, 0)),
+        ((3, -20, 0), (0, 2, 0), (3, -4, 0)),
+        ((20, 20, 20), (-1, -1, -1), np.full(3, 5 / np.sqrt(3))),
+    ):
+        hit = preview_ray.first_hit(scene, origin, ray, nothing)
+        np.testing.assert_allclose(hit, expected, atol=1e-4)
+    assert preview_ray.first_hit(scene, (5.1, -20, 0), (0, 1, 0), nothing) is None
+    assert preview_ray.first_hit(scene, (0, -20, 0), (0, -1, 0), nothing) is None
+
+
+def test_rays_meet_the_cut(scene):
+    front_away = (0.0, -3.0, 0.0, 3.0)  # y < 1 is cut away
+    hit = preview_ray.first_hit(scene, (2, -20, 1), (0, 1, 0), front_away)
+    np.testing.assert_allclose(hit, (2, 1, 1), atol=1e-9)
+    back_away = (0.0, 1.0, 0.0, 4.5)  # y > -4.5
+    assert preview_ray.first_hit(scene, (3, -20, 0), (0, 1, 0), back_away) is None
+    np.testing.assert_allclose(
+        preview_ray.first_hit(scene, (0, -20, 0), (0, 1, 0), back_away), (0, -5, 0), atol=1e-4
+    )
+
+
+def test_probe_says_what_is_there(scene):
+    told = preview_ray.lines(scene, (0.0, 0.0, 0.0))
+    assert told == ["(0, 0, 0) cm", "distance 5 cm", "red 50.0 %", "steel 50.0 %"]

@@ -2,20 +2,17 @@
 
 #include <filesystem>
 
+#include "povray_gen/isosurface_text.hpp"
 #include "povray_gen/scene_samples.hpp"
 #include "povray_gen/vector_text.hpp"
-#include "sardf/certify.hpp"
 #include "sardf/error.hpp"
 
 namespace sardf::povray {
 
 namespace {
 
-// Positions are found, and POV-Ray's own normals differenced, to this share of the diagonal.
-constexpr double accuracy = 1e-5;
 // Half the step of our central differences: rounding and curvature both stay below 1e-9.
 constexpr double normal_step = 1e-5;
-constexpr double gradient_margin = 1.02;
 
 // The identifiers that users meet, reserved before any field takes one.
 struct Identifiers {
@@ -29,23 +26,6 @@ struct Identifiers {
         object(names.unique("object")) {}
   std::string guard, csg, isosurface, pigment, normal_pigment, texture, object;
 };
-
-struct Gradient {
-  double bound = 0;
-  bool proven = true;
-};
-
-// `exact`: nothing in the solid is sampled. Else what the user states of the solid does not hold
-// for the interpolated samples.
-Gradient gradient_of(const PovrayScene& scene, bool exact) {
-  const CertifiedBound bound = certified_lipschitz(Evaluator(scene.solid), scene.bounds);
-  const std::optional<double>& stated = scene.stated_lipschitz;
-  if (bound.value < infinity && !exact) return {bound.value, true};
-  if (stated && !(bound.value <= *stated)) return {*stated, false};
-  if (bound.value < infinity) return {bound.value, true};
-  throw Error("POV-Ray needs a bound of the solid's gradient, and '" + bound.infinite_at +
-              "' has none; rewrite it, or state one: \"lipschitz\": L");
-}
 
 void check_bounds(const BoundingBox& bounds) {
   for (int i = 0; i < 3; ++i) {
@@ -128,30 +108,14 @@ std::string normal_pigment(const std::string& name, const std::string& function,
   return out + three_function_pigment(name, colors);
 }
 
-std::string isosurface_text(const PovrayScene& scene, const Identifiers& ids,
-                            const std::string& solid, const Gradient& gradient) {
-  // POV-Ray's inside is where the function is negative. A macro, because copies of a declared
-  // isosurface do not report a max_gradient that is too small.
-  return filled(
-      "#macro {}()\n  isosurface {\n"
-      "    function { -({}(x, y, z)) }\n"
-      "    contained_by { box { {}, {} } }\n"
-      "    accuracy {}\n"
-      "    max_gradient {} // 1.02 x the bound of the gradient, {}\n"
-      "    #if ({}) all_intersections #end\n  }\n#end\n",
-      {ids.isosurface, solid, vector_text(scene.bounds.lo), vector_text(scene.bounds.hi),
-       number_text(accuracy * scene.bounds.diagonal()),
-       number_text(gradient_margin * gradient.bound),
-       gradient.proven ? "proven" : "stated by the scene, not proven", ids.csg});
-}
-
 std::string include_text(const SceneSamples& samples, Names& names, const Identifiers& ids,
-                         const Gradient& gradient) {
+                         const GradientBound& gradient, const std::vector<Piece>& pieces) {
   FunctionWriter writer(names);
   const PovrayScene& scene = samples.scene;
   std::vector<NamedExpression> all(scene.fields);
   all.push_back({"solid", scene.solid, samples.solid_comment});
   const std::string solid = writer.declare(all).back();
+  const std::vector<std::string> near = declare_pieces(pieces, writer, scene.solid, solid);
   const std::string pigment = color_pigment(samples, ids.pigment, writer);
   const double step = normal_step * scene.bounds.diagonal();
   std::string out = filled(
@@ -171,7 +135,8 @@ std::string include_text(const SceneSamples& samples, Names& names, const Identi
       {one_line(scene.title), ids.object, ids.isosurface, ids.pigment,
        comment_lines(one_line(samples.left_out_sentence())), ids.csg, ids.guard, ids.guard, ids.csg,
        ids.csg});
-  out += writer.text() + "\n" + isosurface_text(scene, ids, solid, gradient) + pigment +
+  out += writer.text() + "\n" +
+         isosurface_macro(scene, ids.isosurface, ids.csg, solid, gradient, pieces, near) + pigment +
          normal_pigment(ids.normal_pigment, solid, step, names);
   out += filled(
       "#declare {} = texture {\n  pigment { {} }\n"
@@ -225,13 +190,14 @@ SceneText scene_text(const PovrayScene& exact_scene, const std::string& include_
   out.sampled = samples.functions;
   out.errors = samples.errors;
   out.sentences = samples.sentences();
-  const Gradient gradient = gradient_of(scene, scene.solid == exact_scene.solid);
+  const GradientBound gradient = gradient_of(scene, scene.solid == exact_scene.solid);
+  const std::vector<Piece> pieces = isosurface_pieces(scene, sampling.progress);
   Names names(scene.title);
   const Identifiers ids(names);
   out.prefix = names.prefix();
-  out.max_gradient = gradient_margin * gradient.bound;
+  out.max_gradient = gradient_margin * gradient.value;
   out.proven = gradient.proven;
-  out.include = include_text(samples, names, ids, gradient);
+  out.include = include_text(samples, names, ids, gradient, pieces);
   out.scene =
       filled("// {}\n#version 3.7;\nglobal_settings { assumed_gamma 1.0 }\n#include \"{}\"\n\n",
              {one_line(scene.title), include_name});

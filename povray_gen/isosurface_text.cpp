@@ -10,25 +10,26 @@ namespace sardf::povray {
 
 namespace {
 
-std::string one_isosurface(const std::string& function, const BoundingBox& box,
+std::string one_isosurface(const std::string& value, const BoundingBox& box,
                            const GradientBound& gradient, double accuracy,
                            const std::string& kind) {
-  // POV-Ray's inside is where the function is negative.
   return filled(
       "  isosurface {\n"
-      "    function { -({}(x, y, z)) }\n"
+      "    function { {} }\n"
       "    contained_by { box { {}, {} } }\n"
       "    accuracy {}\n"
       "    max_gradient {} // 1.02 x the bound of the gradient, {}\n"
       "    {}\n  }\n",
-      {function, vector_text(box.lo), vector_text(box.hi), number_text(accuracy),
+      {value, vector_text(box.lo), vector_text(box.hi), number_text(accuracy),
        number_text(gradient_margin * gradient.value),
        gradient.proven ? "proven" : "stated by the scene, not proven", kind});
 }
 
-// A piece's own bound is proven, or else that of the whole counts.
-GradientBound smaller(const CertifiedBound& own, const GradientBound& whole) {
-  return own.value <= whole.value ? GradientBound{own.value, true} : whole;
+// POV-Ray's inside is where the function is negative.
+std::string negative(const std::string& function, double band) {
+  if (!(band < infinity)) return "-(" + function + "(x, y, z))";
+  const std::string most = number_text(band);
+  return "min(" + most + ", max(-" + most + ", -(" + function + "(x, y, z))))";
 }
 
 }  // namespace
@@ -43,8 +44,14 @@ GradientBound gradient_of(const PovrayScene& scene, bool exact) {
               "' has none; rewrite it, or state one: \"lipschitz\": L");
 }
 
-std::vector<Piece> isosurface_pieces(const PovrayScene& scene, const Progress& progress) {
+GradientBound smaller(const Piece& piece, const GradientBound& whole) {
+  return piece.gradient <= whole.value ? GradientBound{piece.gradient, true} : whole;
+}
+
+std::vector<Piece> isosurface_pieces(const PovrayScene& scene, const GradientBound& whole,
+                                     const Progress& progress) {
   PieceOptions options;
+  options.gradient = whole.value;
   options.accuracy = isosurface_accuracy * scene.bounds.diagonal();
   // POV-Ray does not look at a ray that passes less than the accuracy of a box: all that lies near
   // an edge lies deeper in another piece.
@@ -75,14 +82,16 @@ std::string isosurface_macro(const PovrayScene& scene, const std::string& name,
   // A macro, because copies of a declared isosurface do not report a max_gradient that is too
   // small.
   std::string out = "#macro " + name + "()\n";
-  const std::string all = one_isosurface(solid, scene.bounds, whole, accuracy,
-                                         "#if (" + csg + ") all_intersections #end");
-  if (pieces.size() == 1) return out + all + "#end\n";
-  out += "#if (" + csg + ")\n" + all +
+  const auto closed = [&](const std::string& function, const Piece& piece) {
+    return one_isosurface(negative(function, piece.band), piece.box, smaller(piece, whole),
+                          accuracy, "#if (" + csg + ") all_intersections #end");
+  };
+  if (pieces.size() == 1) return out + closed(functions[0], pieces[0]) + "#end\n";
+  out += "#if (" + csg + ")\n" + closed(solid, {scene.bounds, scene.solid}) +
          "#else\n  // The surface passes through these boxes only.\n" + "  union {\n";
   for (size_t i = 0; i < pieces.size(); ++i) {
-    out += one_isosurface(functions[i], pieces[i].box, smaller(pieces[i].gradient, whole), accuracy,
-                          "open");
+    out += one_isosurface(negative(functions[i], pieces[i].band), pieces[i].box,
+                          smaller(pieces[i], whole), accuracy, "open");
   }
   return out + "  }\n#end\n#end\n";
 }

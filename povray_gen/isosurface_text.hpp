@@ -28,7 +28,11 @@ struct GradientBound {
 GradientBound gradient_of(const PovrayScene& scene, bool exact);
 
 /// The pieces that POV-Ray traces fastest (pieces.hpp). Cancelled.
-std::vector<Piece> isosurface_pieces(const PovrayScene& scene, const Progress& progress);
+std::vector<Piece> isosurface_pieces(const PovrayScene& scene, const GradientBound& whole,
+                                     const Progress& progress);
+
+/// The bound that counts in a piece: its own is proven.
+GradientBound smaller(const Piece& piece, const GradientBound& whole);
 
 /// Declares the functions of the pieces, then a macro `name` without parameters that gives the
 /// solid: one isosurface if the identifier `csg` is true there, else a union of the pieces.

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
+#include "povray_gen/band_bound.hpp"
 #include "povray_gen/expression_of.hpp"
 #include "sardf/shorten.hpp"
 
@@ -16,14 +18,20 @@ namespace {
 // Cells along the longest side of the bounds, a power of two.
 constexpr int finest = 32;
 // Halvings of the bounds: at most so many pieces.
-constexpr int most_halvings = 7;
+constexpr int most_halvings = 6;
 // What a ray costs that meets a piece, in steps of a formula: POV-Ray's own work, and the calls
 // that find that nothing is there.
 constexpr double work_per_box = 60;
 constexpr double calls_per_box = 4;
 // What of the time a split has to save to be worth the text.
 constexpr double worthwhile = 0.97;
-constexpr int lipschitz_boxes = 128;
+// Boxes for a bound of the gradient, over all of a piece and near its surface.
+constexpr int lipschitz_boxes = 32;
+constexpr double band_steps = 4e5;
+// Values beyond this share of a piece's diagonal are cut off where that makes the bound so much
+// smaller that it outweighs the longer steps.
+constexpr double band_share = 0.125;
+constexpr double steeper_off_surface = 1.1;
 
 using Index = std::array<int, 3>;
 
@@ -69,6 +77,21 @@ class Splitter {
     if (!whole_.cells.empty()) split(whole_, most_halvings, out);
     if (out.empty()) out.push_back(whole_);
     return out;
+  }
+
+  /// How many elementary steps a formula takes; of an operation without one, a guess.
+  double steps_of(const Evaluator& field) {
+    double steps = 1;
+    for (const Instruction& i : field.tape().instructions()) {
+      const auto [known, added] = steps_.try_emplace(i.operation, 20);
+      if (added && i.operation->has_formula()) {
+        Trace trace(i.operation->info().arity);
+        i.operation->record(trace);
+        known->second = double(trace.steps().size());
+      }
+      steps += known->second;
+    }
+    return steps;
   }
 
   BoundingBox box_of(const CellRange& range) const {
@@ -122,20 +145,6 @@ class Splitter {
       }
     }
     return range;
-  }
-
-  double steps_of(const Evaluator& field) {
-    double steps = 1;
-    for (const Instruction& i : field.tape().instructions()) {
-      const auto [known, added] = steps_.try_emplace(i.operation, 20);
-      if (added && i.operation->has_formula()) {
-        Trace trace(i.operation->info().arity);
-        i.operation->record(trace);
-        known->second = double(trace.steps().size());
-      }
-      steps += known->second;
-    }
-    return steps;
   }
 
   static double area(const BoundingBox& box) {
@@ -218,18 +227,43 @@ class Splitter {
 
 }  // namespace
 
+namespace {
+
+// Cuts off what is steep far from the surface, where that makes the bound much smaller. False: the
+// piece has no surface at all.
+bool cut_off(Piece& piece, const Evaluator& field, double steps, double whole_gradient) {
+  const double band = band_share * piece.box.diagonal();
+  const int boxes = int(std::clamp(band_steps / steps, 50.0, 10'000.0));
+  const double known = std::min(piece.gradient, whole_gradient);
+  const std::optional<double> bound = band_bound(field, piece.box, band, boxes);
+  if (!bound) return false;
+  if (*bound * steeper_off_surface < known) {
+    piece.gradient = *bound;
+    piece.band = band;
+  }
+  return true;
+}
+
+}  // namespace
+
 std::vector<Piece> pieces_of(const Expression& solid, const BoundingBox& bounds,
                              const PieceOptions& options) {
   Splitter splitter(solid, bounds, options);
   const std::vector<Region> regions = splitter.regions();
-  if (regions.size() == 1) return {{bounds, solid, certified_lipschitz(Evaluator(solid), bounds)}};
   std::vector<Piece> out;
   for (const Region& region : regions) {
-    const BoundingBox box = grown(splitter.box_of(region.range), options.overlap);
-    out.push_back({box, expression_of(*region.field),
-                   certified_lipschitz(*region.field, box, lipschitz_boxes)});
     if (options.progress && !options.progress(0)) throw Cancelled();
+    Piece piece{bounds, solid};
+    if (regions.size() > 1) {
+      piece.box = grown(splitter.box_of(region.range), options.overlap);
+      piece.solid = expression_of(*region.field);
+      piece.gradient = lipschitz_bound(*region.field, piece.box, lipschitz_boxes);
+    }
+    const double steps = splitter.steps_of(*region.field);
+    const bool has_surface = cut_off(piece, *region.field, steps, options.gradient);
+    if (has_surface || regions.size() == 1) out.push_back(std::move(piece));
   }
+  if (out.empty()) out.push_back({bounds, solid});
   return out;
 }
 

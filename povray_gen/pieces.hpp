@@ -16,13 +16,18 @@ namespace sardf::povray {
 struct Piece {
   BoundingBox box;
   Expression solid;  ///< equal to the whole solid, bit for bit, in the box and `reach` around
-  CertifiedBound gradient;  ///< of |grad solid| in the box
+  /// A bound of |grad solid| in the box where |solid| <= band; infinity if that of the whole is no
+  /// larger.
+  double gradient = infinity;
+  /// The values beyond which the solid is steeper and has to be cut off; infinity: none.
+  double band = infinity;
 };
 
 struct PieceOptions {
-  double overlap = 0;   ///< how far pieces extend beyond the faces that they share
-  double reach = 0;     ///< how far outside of its box a piece is evaluated
-  double accuracy = 0;  ///< to which POV-Ray finds the surface
+  double overlap = 0;          ///< how far pieces extend beyond the faces that they share
+  double reach = 0;            ///< how far outside of its box a piece is evaluated
+  double accuracy = 0;         ///< to which POV-Ray finds the surface
+  double gradient = infinity;  ///< a bound of |grad solid| in the bounds
   Progress progress = {};
 };
 

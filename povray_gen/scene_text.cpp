@@ -58,6 +58,31 @@ std::string three_function_pigment(const std::string& name,
   return out + "  }\n}\n";
 }
 
+// Of two or three materials whose fractions sum to 1: the first one's colour, and for each other
+// fraction the way from it, as an average of pigments. One function or two instead of three.
+std::string mixed_pigment(const std::string& name, const PovrayScene& scene,
+                          FunctionWriter& writer) {
+  const std::vector<Vec3>& colors = scene.material_colors;
+  const auto others = double(colors.size() - 1);
+  std::string out;
+  for (size_t i = 1; i < colors.size(); ++i) {
+    const std::string function =
+        writer.declare({"fraction_" + scene.fractions[i].name, scene.fractions[i].expression});
+    out += filled(
+        "    [1 function { min(1, max(0, {}(x, y, z))) } color_map { [0 rgb {}] [1 rgb {}] }]\n",
+        {function, vector_text(colors[0]),
+         vector_text(colors[0] + others * (colors[i] - colors[0]))});
+  }
+  return "#declare " + name + " = pigment {\n  average pigment_map {\n" + out + "  }\n}\n";
+}
+
+// Samples' errors are stated of the channels.
+bool is_mixed(const SceneSamples& samples) {
+  const size_t materials = samples.scene.material_colors.size();
+  return samples.functions.empty() && materials == samples.scene.fractions.size() &&
+         (materials == 2 || materials == 3);
+}
+
 std::string color_pigment(const SceneSamples& samples, const std::string& name,
                           FunctionWriter& writer) {
   const std::array<Expression, 3>& color = samples.scene.color;
@@ -69,6 +94,7 @@ std::string color_pigment(const SceneSamples& samples, const std::string& name,
     even[i] = color[i]->value;
   }
   if (is_even) return "#declare " + name + " = pigment { rgb " + vector_text(even) + " }\n";
+  if (is_mixed(samples)) return mixed_pigment(name, samples.scene, writer);
   const std::vector<std::string> functions =
       writer.declare(std::vector<NamedExpression>{{"red", color[0], samples.color_comments[0]},
                                                   {"green", color[1], samples.color_comments[1]},
@@ -191,12 +217,13 @@ SceneText scene_text(const PovrayScene& exact_scene, const std::string& include_
   out.errors = samples.errors;
   out.sentences = samples.sentences();
   const GradientBound gradient = gradient_of(scene, scene.solid == exact_scene.solid);
-  const std::vector<Piece> pieces = isosurface_pieces(scene, sampling.progress);
+  const std::vector<Piece> pieces = isosurface_pieces(scene, gradient, sampling.progress);
+  const GradientBound drawn = pieces.size() == 1 ? smaller(pieces[0], gradient) : gradient;
   Names names(scene.title);
   const Identifiers ids(names);
   out.prefix = names.prefix();
-  out.max_gradient = gradient_margin * gradient.value;
-  out.proven = gradient.proven;
+  out.max_gradient = gradient_margin * drawn.value;
+  out.proven = drawn.proven;
   out.include = include_text(samples, names, ids, gradient, pieces);
   out.scene =
       filled("// {}\n#version 3.7;\nglobal_settings { assumed_gamma 1.0 }\n#include \"{}\"\n\n",

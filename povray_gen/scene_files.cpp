@@ -48,6 +48,7 @@ std::vector<std::string> write_files(const Scene& scene, const SceneFiles& files
   const std::vector<std::string> materials = scene.material_names();
   for (size_t i = 0; i < scene.fractions().size(); ++i) {
     text.fractions.push_back({materials.at(i), scene.fractions()[i]});
+    text.material_colors.push_back(d.materials.at(i).color);
   }
   text.color = scene.base_color();
   text.camera = files.camera;

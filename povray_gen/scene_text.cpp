@@ -2,20 +2,17 @@
 
 #include <filesystem>
 
+#include "povray_gen/isosurface_text.hpp"
 #include "povray_gen/scene_samples.hpp"
 #include "povray_gen/vector_text.hpp"
-#include "sardf/certify.hpp"
 #include "sardf/error.hpp"
 
 namespace sardf::povray {
 
 namespace {
 
-// Positions are found, and POV-Ray's own normals differenced, to this share of the diagonal.
-constexpr double accuracy = 1e-5;
 // Half the step of our central differences: rounding and curvature both stay below 1e-9.
 constexpr double normal_step = 1e-5;
-constexpr double gradient_margin = 1.02;
 
 // The identifiers that users meet, reserved before any field takes one.
 struct Identifiers {
@@ -29,23 +26,6 @@ struct Identifiers {
         object(names.unique("object")) {}
   std::string guard, csg, isosurface, pigment, normal_pigment, texture, object;
 };
-
-struct Gradient {
-  double bound = 0;
-  bool proven = true;
-};
-
-// `exact`: nothing in the solid is sampled. Else what the user states of the solid does not hold
-// for the interpolated samples.
-Gradient gradient_of(const PovrayScene& scene, bool exact) {
-  const CertifiedBound bound = certified_lipschitz(Evaluator(scene.solid), scene.bounds);
-  const std::optional<double>& stated = scene.stated_lipschitz;
-  if (bound.value < infinity && !exact) return {bound.value, true};
-  if (stated && !(bound.value <= *stated)) return {*stated, false};
-  if (bound.value < infinity) return {bound.value, true};
-  throw Error("POV-Ray needs a bound of the solid's gradient, and '" + bound.infinite_at +
-              "' has none; rewrite it, or state one: \"lipschitz\": L");
-}
 
 void check_bounds(const BoundingBox& bounds) {
   for (int i = 0; i < 3; ++i) {
@@ -78,6 +58,31 @@ std::string three_function_pigment(const std::string& name,
   return out + "  }\n}\n";
 }
 
+// Of two or three materials whose fractions sum to 1: the first one's colour, and for each other
+// fraction the way from it, as an average of pigments. One function or two instead of three.
+std::string mixed_pigment(const std::string& name, const PovrayScene& scene,
+                          FunctionWriter& writer) {
+  const std::vector<Vec3>& colors = scene.material_colors;
+  const auto others = double(colors.size() - 1);
+  std::string out;
+  for (size_t i = 1; i < colors.size(); ++i) {
+    const std::string function =
+        writer.declare({"fraction_" + scene.fractions[i].name, scene.fractions[i].expression});
+    out += filled(
+        "    [1 function { min(1, max(0, {}(x, y, z))) } color_map { [0 rgb {}] [1 rgb {}] }]\n",
+        {function, vector_text(colors[0]),
+         vector_text(colors[0] + others * (colors[i] - colors[0]))});
+  }
+  return "#declare " + name + " = pigment {\n  average pigment_map {\n" + out + "  }\n}\n";
+}
+
+// Samples' errors are stated of the channels.
+bool is_mixed(const SceneSamples& samples) {
+  const size_t materials = samples.scene.material_colors.size();
+  return samples.functions.empty() && materials == samples.scene.fractions.size() &&
+         (materials == 2 || materials == 3);
+}
+
 std::string color_pigment(const SceneSamples& samples, const std::string& name,
                           FunctionWriter& writer) {
   const std::array<Expression, 3>& color = samples.scene.color;
@@ -89,6 +94,7 @@ std::string color_pigment(const SceneSamples& samples, const std::string& name,
     even[i] = color[i]->value;
   }
   if (is_even) return "#declare " + name + " = pigment { rgb " + vector_text(even) + " }\n";
+  if (is_mixed(samples)) return mixed_pigment(name, samples.scene, writer);
   const std::vector<std::string> functions =
       writer.declare(std::vector<NamedExpression>{{"red", color[0], samples.color_comments[0]},
                                                   {"green", color[1], samples.color_comments[1]},
@@ -128,30 +134,14 @@ std::string normal_pigment(const std::string& name, const std::string& function,
   return out + three_function_pigment(name, colors);
 }
 
-std::string isosurface_text(const PovrayScene& scene, const Identifiers& ids,
-                            const std::string& solid, const Gradient& gradient) {
-  // POV-Ray's inside is where the function is negative. A macro, because copies of a declared
-  // isosurface do not report a max_gradient that is too small.
-  return filled(
-      "#macro {}()\n  isosurface {\n"
-      "    function { -({}(x, y, z)) }\n"
-      "    contained_by { box { {}, {} } }\n"
-      "    accuracy {}\n"
-      "    max_gradient {} // 1.02 x the bound of the gradient, {}\n"
-      "    #if ({}) all_intersections #end\n  }\n#end\n",
-      {ids.isosurface, solid, vector_text(scene.bounds.lo), vector_text(scene.bounds.hi),
-       number_text(accuracy * scene.bounds.diagonal()),
-       number_text(gradient_margin * gradient.bound),
-       gradient.proven ? "proven" : "stated by the scene, not proven", ids.csg});
-}
-
 std::string include_text(const SceneSamples& samples, Names& names, const Identifiers& ids,
-                         const Gradient& gradient) {
+                         const GradientBound& gradient, const std::vector<Piece>& pieces) {
   FunctionWriter writer(names);
   const PovrayScene& scene = samples.scene;
   std::vector<NamedExpression> all(scene.fields);
   all.push_back({"solid", scene.solid, samples.solid_comment});
   const std::string solid = writer.declare(all).back();
+  const std::vector<std::string> near = declare_pieces(pieces, writer, scene.solid, solid);
   const std::string pigment = color_pigment(samples, ids.pigment, writer);
   const double step = normal_step * scene.bounds.diagonal();
   std::string out = filled(
@@ -171,7 +161,8 @@ std::string include_text(const SceneSamples& samples, Names& names, const Identi
       {one_line(scene.title), ids.object, ids.isosurface, ids.pigment,
        comment_lines(one_line(samples.left_out_sentence())), ids.csg, ids.guard, ids.guard, ids.csg,
        ids.csg});
-  out += writer.text() + "\n" + isosurface_text(scene, ids, solid, gradient) + pigment +
+  out += writer.text() + "\n" +
+         isosurface_macro(scene, ids.isosurface, ids.csg, solid, gradient, pieces, near) + pigment +
          normal_pigment(ids.normal_pigment, solid, step, names);
   out += filled(
       "#declare {} = texture {\n  pigment { {} }\n"
@@ -225,13 +216,15 @@ SceneText scene_text(const PovrayScene& exact_scene, const std::string& include_
   out.sampled = samples.functions;
   out.errors = samples.errors;
   out.sentences = samples.sentences();
-  const Gradient gradient = gradient_of(scene, scene.solid == exact_scene.solid);
+  const GradientBound gradient = gradient_of(scene, scene.solid == exact_scene.solid);
+  const std::vector<Piece> pieces = isosurface_pieces(scene, gradient, sampling.progress);
+  const GradientBound drawn = pieces.size() == 1 ? smaller(pieces[0], gradient) : gradient;
   Names names(scene.title);
   const Identifiers ids(names);
   out.prefix = names.prefix();
-  out.max_gradient = gradient_margin * gradient.bound;
-  out.proven = gradient.proven;
-  out.include = include_text(samples, names, ids, gradient);
+  out.max_gradient = gradient_margin * drawn.value;
+  out.proven = drawn.proven;
+  out.include = include_text(samples, names, ids, gradient, pieces);
   out.scene =
       filled("// {}\n#version 3.7;\nglobal_settings { assumed_gamma 1.0 }\n#include \"{}\"\n\n",
              {one_line(scene.title), include_name});

@@ -28,6 +28,8 @@ struct PovrayScene {
   std::array<Expression, 3> color{};    ///< linear Rec.709; null: a light grey
   /// Not written: of those with sampled functions in them, the errors are stated.
   std::vector<NamedExpression> fractions;
+  /// Linear colours of the fractions' materials, where the color is their average; may be empty.
+  std::vector<Vec3> material_colors;
   Camera camera;
   int width = 320;  ///< pixels; the camera's picture depends on their ratio
   int height = 240;

@@ -16,7 +16,10 @@ Enclosure Operation::range(const Enclosure* in) const {
 
 Fate Operation::fate(const Enclosure*, const Demand&) const { return {}; }
 
-double spectral_bound(std::span<const Slope> rows) {
+namespace {
+
+// From the scalar products of the partials' columns.
+double bound_by_columns(std::span<const Slope> rows) {
   double most = 0;
   for (int i = 0; i < 3; ++i) {
     double row_sum = 0;
@@ -29,7 +32,33 @@ double spectral_bound(std::span<const Slope> rows) {
     }
     most = max(most, row_sum);
   }
-  return rounded_up(std::sqrt(most));
+  return most;
+}
+
+// From the scalar products of the gradients, whose lengths may be known better than their
+// directions: of the inputs of an extrusion, which are perpendicular, the longer one counts.
+double bound_by_rows(std::span<const Slope> rows) {
+  double most = 0;
+  for (const Slope& row : rows) {
+    double row_sum = 0;
+    for (const Slope& other : rows) {
+      const double lengths = (Interval(row.length) * Interval(other.length)).magnitude();
+      Interval product = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        product = product + row.partial[axis] * other.partial[axis];
+      }
+      row_sum =
+          rounded_up(row_sum + (&row == &other ? lengths : min(lengths, product.magnitude())));
+    }
+    most = max(most, row_sum);
+  }
+  return most;
+}
+
+}  // namespace
+
+double spectral_bound(std::span<const Slope> rows) {
+  return rounded_up(std::sqrt(min(bound_by_columns(rows), bound_by_rows(rows))));
 }
 
 }  // namespace sardf

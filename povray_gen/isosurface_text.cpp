@@ -1,0 +1,99 @@
+#include "povray_gen/isosurface_text.hpp"
+
+#include <unordered_map>
+
+#include "povray_gen/scene_text.hpp"
+#include "povray_gen/vector_text.hpp"
+#include "sardf/error.hpp"
+
+namespace sardf::povray {
+
+namespace {
+
+std::string one_isosurface(const std::string& value, const BoundingBox& box,
+                           const GradientBound& gradient, double accuracy,
+                           const std::string& kind) {
+  return filled(
+      "  isosurface {\n"
+      "    function { {} }\n"
+      "    contained_by { box { {}, {} } }\n"
+      "    accuracy {}\n"
+      "    max_gradient {} // 1.02 x the bound of the gradient, {}\n"
+      "    {}\n  }\n",
+      {value, vector_text(box.lo), vector_text(box.hi), number_text(accuracy),
+       number_text(gradient_margin * gradient.value),
+       gradient.proven ? "proven" : "stated by the scene, not proven", kind});
+}
+
+// POV-Ray's inside is where the function is negative.
+std::string negative(const std::string& function, double band) {
+  if (!(band < infinity)) return "-(" + function + "(x, y, z))";
+  const std::string most = number_text(band);
+  return "min(" + most + ", max(-" + most + ", -(" + function + "(x, y, z))))";
+}
+
+}  // namespace
+
+GradientBound gradient_of(const PovrayScene& scene, bool exact) {
+  const CertifiedBound bound = certified_lipschitz(Evaluator(scene.solid), scene.bounds);
+  const std::optional<double>& stated = scene.stated_lipschitz;
+  if (bound.value < infinity && !exact) return {bound.value, true};
+  if (stated && !(bound.value <= *stated)) return {*stated, false};
+  if (bound.value < infinity) return {bound.value, true};
+  throw Error("POV-Ray needs a bound of the solid's gradient, and '" + bound.infinite_at +
+              "' has none; rewrite it, or state one: \"lipschitz\": L");
+}
+
+GradientBound smaller(const Piece& piece, const GradientBound& whole) {
+  return piece.gradient <= whole.value ? GradientBound{piece.gradient, true} : whole;
+}
+
+std::vector<Piece> isosurface_pieces(const PovrayScene& scene, const GradientBound& whole,
+                                     const Progress& progress) {
+  PieceOptions options;
+  options.gradient = whole.value;
+  options.accuracy = isosurface_accuracy * scene.bounds.diagonal();
+  // POV-Ray does not look at a ray that passes less than the accuracy of a box: all that lies near
+  // an edge lies deeper in another piece.
+  options.overlap = 4 * options.accuracy;
+  // POV-Ray's own normals are differences over the accuracy.
+  options.reach = 4 * options.accuracy;
+  options.progress = progress;
+  return pieces_of(scene.solid, scene.bounds, options);
+}
+
+std::vector<std::string> declare_pieces(const std::vector<Piece>& pieces, FunctionWriter& writer,
+                                        const Expression& whole, const std::string& solid) {
+  std::unordered_map<const Node*, std::string> known{{whole.get(), solid}};
+  std::vector<std::string> out;
+  for (const Piece& piece : pieces) {
+    std::string& name = known[piece.solid.get()];
+    if (name.empty()) name = writer.declare({"solid_near", piece.solid});
+    out.push_back(name);
+  }
+  return out;
+}
+
+std::string isosurface_macro(const PovrayScene& scene, const std::string& name,
+                             const std::string& csg, const std::string& solid,
+                             const GradientBound& whole, const std::vector<Piece>& pieces,
+                             const std::vector<std::string>& functions) {
+  const double accuracy = isosurface_accuracy * scene.bounds.diagonal();
+  // A macro, because copies of a declared isosurface do not report a max_gradient that is too
+  // small.
+  std::string out = "#macro " + name + "()\n";
+  const auto closed = [&](const std::string& function, const Piece& piece) {
+    return one_isosurface(negative(function, piece.band), piece.box, smaller(piece, whole),
+                          accuracy, "#if (" + csg + ") all_intersections #end");
+  };
+  if (pieces.size() == 1) return out + closed(functions[0], pieces[0]) + "#end\n";
+  out += "#if (" + csg + ")\n" + closed(solid, {scene.bounds, scene.solid}) +
+         "#else\n  // The surface passes through these boxes only.\n" + "  union {\n";
+  for (size_t i = 0; i < pieces.size(); ++i) {
+    out += one_isosurface(negative(functions[i], pieces[i].band), pieces[i].box,
+                          smaller(pieces[i], whole), accuracy, "open");
+  }
+  return out + "  }\n#end\n#end\n";
+}
+
+}  // namespace sardf::povray

@@ -32,7 +32,8 @@ part_bake         a part's scene through job and assemble, in animations too
 part_objects part_lists part_presets part_operators part_status part_panel    the user interface
 
 preview and preview_*    parts shown in the viewport while they are made: samples from the core in a
-                         worker thread (preview_volume, no bpy), one shader, legend, probe
+                         worker thread (preview_volume, no bpy), one shader, legend, probe;
+                         part_preview says which parts there are
 """
 
 import importlib
@@ -48,6 +49,29 @@ bl_info = {
 }
 
 
-properties operators panel    the user interface
-preview and preview_*         parts shown in the viewport while they are made: samples from the core
-                              in a worker thread (preview_volume, no bpy), one shader, legend, probe
+MODULES = (  # in the order in which Blender must know them
+    "properties",
+    "part_properties",
+    "part_objects",
+    "part_status",
+    "operators",
+    "part_lists",
+    "part_operators",
+    "panel",
+    "part_panel",
+    "commands",
+    "preview_settings",
+    "preview_panel",
+    "preview",
+    "part_preview",
+)
+
+
+def register():
+    for name in MODULES:
+        importlib.import_module(f".{name}", __package__).register()
+
+
+def unregister():
+    for name in reversed(MODULES):
+        importlib.import_module(f".{name}", __package__).unregister()

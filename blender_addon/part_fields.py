@@ -6,8 +6,6 @@ from .part_error import PartError
 from .part_properties import NO_KIND
 from .transforms import Flat, numbers, placed, take_apart
 
-FEATURES = ("point", "polyline", "bspline_curve", "skeleton", "mesh_surface")
-
 
 def object_field(item, frame, warnings, as_feature=False):
     """The field of an object that is no part, in the part's frame. Raises PartError.

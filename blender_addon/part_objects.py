@@ -2,7 +2,7 @@
 """Making parts, primitives and entries, and finding the part that an object belongs to."""
 
 import bpy
-from mathutils import Matrix, Vector
+from mathutils import Vector
 
 from . import part_properties, wireframes
 from .part_fields import values_of
@@ -160,10 +160,6 @@ def middle(items):
     if not items:
         return Vector()
     return sum((world_of(item).translation for item in items), Vector()) / len(items)
-
-
-def identity():
-    return Matrix.Identity(4)
 
 
 def register():

@@ -112,13 +112,8 @@ def _turned(field, place):
 def _ball(kind, place, matrix):
     if place.even and kind == "sphere":
         return {"sphere": _middle(place) | {"radius": number(place.factor)}}
-    if not place.straight:  # a sheared ball is an ellipsoid along other axes
-        import numpy as np  # only here: take_apart does without
-
-        axes, scale, _ = np.linalg.svd(np.array(matrix.to_3x3()))
-        place.axes = [Vector(axes[:, column]) for column in range(3)]
-        place.scale = [float(value) for value in scale]
-        place.handed = 1 if np.linalg.det(axes) > 0 else -1
+    if not place.straight:
+        return placed({"sphere": {"radius": 1}}, matrix)
     return _turned({"ellipsoid": _middle(place) | {"radii": numbers(place.scale)}}, place)
 
 

@@ -4,7 +4,6 @@
 import math
 from dataclasses import dataclass
 
-import numpy as np
 from mathutils import Matrix, Vector
 
 DIGITS = 7  # Blender computes in single precision: what follows is noise
@@ -75,7 +74,7 @@ def quaternion_of(axes):
     turn.normalize()
     if turn.w < 0:
         turn.negate()
-    if math.sqrt(turn.x**2 + turn.y**2 + turn.z**2) < 1e-6:
+    if Vector((turn.x, turn.y, turn.z)).length < 1e-6:
         return None
     return numbers(turn, 1.0)
 
@@ -89,7 +88,7 @@ def placed(field, matrix):
     """
     place = take_apart(matrix)
     if not place.even:
-        return _stretched(field, matrix)
+        return _stretched(field, matrix, place)
     axes = list(place.axes)
     if place.handed < 0:
         field = {"mirror": {"field": field, "normal": "x"}}
@@ -103,9 +102,9 @@ def placed(field, matrix):
     return {"translate": {"field": field, "by": by}} if any(by) else field
 
 
-def _stretched(field, matrix):
-    least = float(np.linalg.svd(np.array(matrix.to_3x3()), compute_uv=False)[-1])
+def _stretched(field, matrix, place):
     inverse = matrix.inverted()
+    least = _least_stretch(place, inverse)
     size = max(abs(value) for row in inverse for value in row)
     rows = []
     for row in list(inverse)[:3]:
@@ -120,3 +119,14 @@ def _stretched(field, matrix):
         rows.append("=" + "".join(terms).removeprefix("+"))
     inner = {"at": {"field": field, "point": rows}}
     return {"scale": {"field": inner, "factor": number(least)}}
+
+
+def _least_stretch(place, inverse):
+    """A number that no length is shrunk below; of axes at right angles it is the least scale.
+
+    The inverse stretches nothing by more than the length of all its entries together.
+    """
+    if place.straight:
+        return min(place.scale)
+    rows = [Vector(row[:3]) for row in list(inverse)[:3]]
+    return 1 / Vector([row.length for row in rows]).length

@@ -3,6 +3,8 @@
 
 import math
 
+from mathutils import Matrix, Vector
+
 STEPS = 32  # of a circle
 
 
@@ -27,7 +29,8 @@ def _circle(radius, normal="z", height=0.0, around=(0.0, 0.0), start=0.0, turn=2
     whole = abs(turn) >= 2 * math.pi
     steps = STEPS if whole else STEPS // 2
     angles = [start + turn * i / steps for i in range(steps + (not whole))]
-    flat = [(around[0] + radius * math.cos(a), around[1] + radius * math.sin(a)) for a in angles]
+    reach, middle = Vector((radius, 0)), Vector(around)
+    flat = [middle + Matrix.Rotation(angle, 2) @ reach for angle in angles]
     place = {"z": lambda u, v: (u, v, height), "y": lambda u, v: (u, height, v),
              "x": lambda u, v: (height, u, v)}[normal]  # fmt: skip
     return [place(u, v) for u, v in flat]
@@ -49,7 +52,7 @@ def _rounded_box(_values):
     short = 0.85
     for axis in "xyz":
         for height in (-1, 1):
-            yield _circle(short * math.sqrt(2), axis, height)[4::8], True
+            yield _circle(short * Vector((1, 1)).length, axis, height)[4::8], True
 
 
 def _cylinder(values):

@@ -102,7 +102,7 @@ def row(scene, width, height):
         gradient = smallest_gradient(drawing, reference)
         plain_seconds, plain_calls = drawing.draw(drawing.plain(gradient))[1:]
         other = drawing.draw(drawing.plain(gradient, "evaluate 1, 1.2, 0.99"))
-        pieces, bound, steepest = bounds_and_truth(drawing, sardf.load(scene).drawn)
+        pieces, bound, steepest = bounds_and_truth(drawing, sardf.load(str(scene)).drawn)
     return (
         f"| {scene.stem} | {pieces} | {calls} | {seconds:.2f} | {agreement(mask, reference):.4f} "
         f"| {gradient:.2f} | {plain_calls} | {plain_seconds:.2f} | {other[2]} | {other[1]:.2f} "

@@ -27,10 +27,10 @@ constexpr double calls_per_box = 4;
 constexpr double worthwhile = 0.97;
 // Boxes for a bound of the gradient, over all of a piece and near its surface.
 constexpr int lipschitz_boxes = 32;
-constexpr double band_steps = 4e5;
+constexpr double band_steps = 2e5;
 // Values beyond this share of a piece's diagonal are cut off where that makes the bound so much
 // smaller that it outweighs the longer steps.
-constexpr double band_share = 0.125;
+constexpr double band_share = 0.05;
 constexpr double steeper_off_surface = 1.1;
 
 using Index = std::array<int, 3>;

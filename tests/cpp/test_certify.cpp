@@ -180,5 +180,14 @@ TEST(LipschitzBound, OfUnboundedBoxesIsTheSlopes) {
   EXPECT_EQ(lipschitz_bound(Evaluator(x * y), everywhere), infinity);
 }
 
+TEST(LipschitzBound, OfAnExtrusionIsThatOfItsProfile) {
+  // The profile's gradient turns by 90 degrees at its corners: only its length is known there.
+  const Field profile =
+      make_field("polygon", {std::vector<Vec2>{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}});
+  const Field block = make_field("extrude", {profile, 2.0});
+  const BoundingBox around_a_corner{{0.9, 0.8, 0.7}, {1.2, 1.1, 1.3}};
+  EXPECT_NEAR(lipschitz_bound(Evaluator(block.expression()), around_a_corner), 1, 1e-9);
+}
+
 }  // namespace
 }  // namespace sardf

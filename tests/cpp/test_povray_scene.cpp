@@ -132,6 +132,42 @@ TEST_F(PovrayRender, ColoursAndMaskAreThoseOfTheFormula) {
   EXPECT_LT(worst, 1e-3) << "half precision has 5e-4";
 }
 
+TEST_F(PovrayRender, TwoAndThreeMaterialsTakeFewerFunctionsAndLookTheSame) {
+  const std::vector<Vec3> colors{{0.9, 0.1, 0.05}, {0.1, 0.7, 0.3}, {0.2, 0.3, 0.8}};
+  const auto plus = make_operation(Add()), times = make_operation(Multiply());
+  const Expression across = ramp(X, 0.4), up = call(times, {constant(0.3), ramp(Z, 0.4)});
+  for (size_t materials : {2u, 3u}) {
+    PovrayScene scene = ball_scene();
+    Expression rest = call(make_operation(Subtract()), {constant(1), up});
+    scene.fractions = {{"a", call(times, {rest, across})}};
+    scene.fractions.push_back(
+        {"b", call(make_operation(Subtract()), {rest, scene.fractions[0].expression})});
+    if (materials == 3) scene.fractions.push_back({"c", up});
+    if (materials == 2) {
+      scene.fractions = {{"a", across},
+                         {"b", call(make_operation(Subtract()), {constant(1), across})}};
+    }
+    for (size_t channel = 0; channel < 3; ++channel) {
+      scene.color[channel] = constant(0);
+      for (size_t i = 0; i < materials; ++i) {
+        const Expression share =
+            call(times, {scene.fractions[i].expression, constant(colors[i][channel])});
+        scene.color[channel] = call(plus, {scene.color[channel], share});
+      }
+    }
+    const Image by_channels = render(scene);
+    scene.material_colors.assign(colors.begin(), colors.begin() + std::ptrdiff_t(materials));
+    const povray::SceneText text = povray::scene_text(scene, "scene.inc");
+    EXPECT_THAT(text.include, testing::Not(HasSubstr("plate_red")));
+    const Image by_fractions = render(scene, text);
+    float worst = 0;
+    for (size_t i = 0; i < by_channels.samples.size(); ++i) {
+      worst = std::max(worst, std::abs(by_channels.samples[i] - by_fractions.samples[i]));
+    }
+    EXPECT_LT(worst, 1e-3) << "half precision has 5e-4";
+  }
+}
+
 TEST_F(PovrayRender, NormalsPointOutwards) {
   PovrayScene scene = ball_scene();
   scene.look = Look::normals;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <queue>
 
-#include "sardf/error.hpp"
-
 namespace sardf::povray {
 
 namespace {
@@ -18,13 +16,10 @@ struct Part {
 
 // 0 where the field is not in the band, or its gradient is not known.
 double attained_at(const Evaluator& field, const Vec3& point, double band) {
+  if (!field.has_gradients()) return 0;
   double value = 0;
   Vec3 gradient;
-  try {
-    field.gradients(point.data(), 1, &value, gradient.data());
-  } catch (const Error&) {
-    return 0;
-  }
+  field.gradients(point.data(), 1, &value, gradient.data());
   const double length = norm(gradient);
   return std::abs(value) <= band && length < infinity ? length : 0;
 }

@@ -7,6 +7,7 @@ are made by a worker thread (preview_volume), timers here poll it, handlers only
 changed: neither waits for the other.
 """
 
+import threading
 import traceback
 from pathlib import Path
 
@@ -260,7 +261,10 @@ def update_now():
 
 
 def _start(timer, seconds):
-    if not bpy.app.background and not bpy.app.timers.is_registered(timer):
+    # Rendering an animation calls handlers from a thread of its own; timers are not for that.
+    if bpy.app.background or threading.current_thread() is not threading.main_thread():
+        return
+    if not bpy.app.timers.is_registered(timer):
         bpy.app.timers.register(timer, first_interval=seconds)
 
 

@@ -76,7 +76,7 @@ class Volume:
     """Samples of the drawn solid and its colours over the box from lo to hi (scene units).
 
     counts: samples along x, y and z. field: float32, x fastest, in multiples of `unit` scene units,
-    no steeper than one unit for each diagonal of a cell. color: float32, four for each sample,
+    no steeper than one unit for each sum of a cell's edges. color: float32, four for each sample,
     linear, times alpha. Both are None once they are textures. range: of the number that is shown,
     or of the first component, or None. latency: seconds since the wish.
     """
@@ -130,8 +130,7 @@ def make_volume(scene, wish, resolution, progress=None):
         material=wish.material,
         progress=progress,
     )
-    diagonal = float(np.linalg.norm((hi - lo) / counts))
-    unit = samples["steepness"] * diagonal
+    unit = samples["steepness"] * float(((hi - lo) / counts).sum())
     if not 0 < unit < math.inf:
         unit = 1.0
     values = samples["field"].reshape(-1)
@@ -172,9 +171,9 @@ def make_stand_in(sardf, scene, wish, progress=None):
     """The StandIn of a scene that was read from the wish's source."""
     shown = scene
     *normal, offset = wish.plane
-    length = math.hypot(*normal)
-    if length > 0:
-        point = [-offset * n / length**2 for n in normal]
+    square = sum(n * n for n in normal)
+    if square > 0:
+        point = [-offset * n / square for n in normal]
         shown = scene.section(remove=sardf.half_space(point=point, normal=normal))
     mesh = shown.mesh(resolution=STAND_IN, size=0, progress=progress)
     vertices, faces = mesh.vertices, mesh.faces

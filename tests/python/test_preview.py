@@ -1,4 +1,4 @@
-"""The preview without Blender: the worker thread, and rays."""
+"""The preview without Blender: the worker thread, and what the probe says."""
 
 import json
 import sys
@@ -13,7 +13,7 @@ from repository import ROOT
 
 sys.path.insert(0, str(ROOT))
 try:
-    from blender_addon import preview_ray, preview_volume
+    from blender_addon import preview_reading, preview_volume
 finally:
     sys.path.remove(str(ROOT))
 Wish, Sampler = preview_volume.Wish, preview_volume.Sampler
@@ -157,30 +157,6 @@ def scene():
     return sardf.Scene.from_json(ball())
 
 
-def test_rays_find_the_first_point(scene):
-    nothing = (0.0, 0.0, 0.0, 0.0)
-    for origin, ray, expected in (
-        ((0, -20, 0), (0, 1, 0), (0, -5, 0)),
-        ((3, -20, 0), (0, 2, 0), (3, -4, 0)),
-        ((20, 20, 20), (-1, -1, -1), np.full(3, 5 / np.sqrt(3))),
-    ):
-        hit = preview_ray.first_hit(scene, origin, ray, nothing)
-        np.testing.assert_allclose(hit, expected, atol=1e-4)
-    assert preview_ray.first_hit(scene, (5.1, -20, 0), (0, 1, 0), nothing) is None
-    assert preview_ray.first_hit(scene, (0, -20, 0), (0, -1, 0), nothing) is None
-
-
-def test_rays_meet_the_cut(scene):
-    front_away = (0.0, -3.0, 0.0, 3.0)  # y < 1 is cut away
-    hit = preview_ray.first_hit(scene, (2, -20, 1), (0, 1, 0), front_away)
-    np.testing.assert_allclose(hit, (2, 1, 1), atol=1e-9)
-    back_away = (0.0, 1.0, 0.0, 4.5)  # y > -4.5
-    assert preview_ray.first_hit(scene, (3, -20, 0), (0, 1, 0), back_away) is None
-    np.testing.assert_allclose(
-        preview_ray.first_hit(scene, (0, -20, 0), (0, 1, 0), back_away), (0, -5, 0), atol=1e-4
-    )
-
-
 def test_probe_says_what_is_there(scene):
-    told = preview_ray.lines(scene, (0.0, 0.0, 0.0))
+    told = preview_reading.lines(scene, (0.0, 0.0, 0.0))
     assert told == ["(0, 0, 0) cm", "distance 5 cm", "red 50.0 %", "steel 50.0 %"]

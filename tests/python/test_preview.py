@@ -13,10 +13,10 @@ from repository import ROOT
 
 sys.path.insert(0, str(ROOT))
 try:
-    from blender_addon import preview_reading, preview_volume
+    from blender_addon import preview_reading, preview_sampler, preview_volume
 finally:
     sys.path.remove(str(ROOT))
-Wish, Sampler = preview_volume.Wish, preview_volume.Sampler
+Wish, Sampler = preview_volume.Wish, preview_sampler.Sampler
 
 LIMIT = 60.0
 
@@ -49,7 +49,7 @@ def test_coarse_comes_first_and_fine_follows(sampler):
     sampler.request("ball", Wish(ball(), resolution=96))
     (key, coarse), (_, fine) = results(sampler, 2)
     assert key == "ball"
-    assert (max(coarse.counts), max(fine.counts)) == (preview_volume.COARSE, 96)
+    assert (max(coarse.counts), max(fine.counts)) == (preview_sampler.COARSE, 96)
     assert fine.scene is coarse.scene
     assert not sampler.busy
     assert 0 < coarse.seconds <= coarse.latency < fine.latency
@@ -90,7 +90,7 @@ def test_the_newest_wish_wins(sampler):
 def test_what_is_new_goes_before_what_is_fine(sampler):
     sampler.request("large", Wish(ball(), resolution=400, cut=True))
     results(sampler, 1)
-    time.sleep(preview_volume.QUIET + 0.05)  # the fine picture is at work
+    time.sleep(preview_sampler.QUIET + 0.05)  # the fine picture is at work
     begun = time.monotonic()
     sampler.request("small", Wish(ball(2), resolution=32))
     (key, _), *_ = results(sampler, 1)
@@ -112,7 +112,7 @@ def test_the_thread_ends_at_once():
     sampler = Sampler(sardf)
     sampler.request("ball", Wish(ball(), resolution=500, cut=True))
     results(sampler, 1)
-    time.sleep(preview_volume.QUIET + 0.1)
+    time.sleep(preview_sampler.QUIET + 0.1)
     begun = time.monotonic()
     sampler.stop(limit=LIMIT)
     assert time.monotonic() - begun < 1  # the core's own limit is 0.1 s; the machine may be busy

@@ -16,7 +16,7 @@ render       Cycles settings of each look
 assemble     all of the above for one part; used by the operators and by headless.py alike
 properties operators panel    the user interface
 preview and preview_*         parts shown in the viewport while they are made: samples from the core
-                              in a worker thread (preview_sampler), one shader, legend, probe
+                              in a worker thread (preview_volume, no bpy), one shader, legend, probe
 """
 
 bl_info = {

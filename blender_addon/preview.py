@@ -2,18 +2,27 @@
 """The live preview: parts as they are being made, in every 3-D viewport.
 
 Whoever has parts appends a function to `providers`; it is asked after every change and says which
-parts there are now. `CURRENT` keeps what is shown; nothing of it is stored in the .blend. Samples
-are made by a worker thread (preview_volume), timers here poll it, handlers only note that something
+parts there are now. `CURRENT` keeps what is shown; nothing of it is stored in the .blend. A worker
+thread (preview_sampler) makes the samples, timers here poll it, handlers only note that something
 changed: neither waits for the other.
 """
 
+import threading
 import traceback
 from pathlib import Path
 
 import bpy
 from mathutils import Matrix
 
-from . import assemble, core, preview_draw, preview_legend, preview_stand_in, preview_volume
+from . import (
+    assemble,
+    core,
+    preview_draw,
+    preview_legend,
+    preview_sampler,
+    preview_stand_in,
+    preview_volume,
+)
 
 SOON = 0.01  # seconds from a change to the question what there is now; changes in between are one
 TICK = 0.02  # seconds between two looks at the worker thread
@@ -178,7 +187,7 @@ class Preview:
     def _worker(self):
         if self._sampler is None:
             try:
-                self._sampler = preview_volume.Sampler(core.load())
+                self._sampler = preview_sampler.Sampler(core.load())
             except core.MissingCore as error:
                 self.error = str(error)
         return self._sampler
@@ -260,7 +269,10 @@ def update_now():
 
 
 def _start(timer, seconds):
-    if not bpy.app.background and not bpy.app.timers.is_registered(timer):
+    # Rendering an animation calls handlers from a thread of its own; timers are not for that.
+    if bpy.app.background or threading.current_thread() is not threading.main_thread():
+        return
+    if not bpy.app.timers.is_registered(timer):
         bpy.app.timers.register(timer, first_interval=seconds)
 
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The legend over the viewport: what the colours mean, and how large things are."""
 
-import math
-
 import blf
 import gpu
 from bpy_extras.view3d_utils import location_3d_to_region_2d
@@ -161,10 +159,15 @@ def pixels_per_unit(context, part):
     view = context.region_data
     across = view.view_rotation @ Vector((part.matrix.median_scale, 0, 0))
     ends = [location_3d_to_region_2d(context.region, view, p) for p in (center, center + across)]
-    return 0.0 if None in ends else (ends[1] - ends[0]).length
+    length = 0.0 if None in ends else (ends[1] - ends[0]).length
+    return length if 1e-6 < length < 1e6 else 0.0
 
 
 def nice_length(most):
     """The largest of 1, 2 and 5 times a power of ten that is not more."""
-    power = 10.0 ** math.floor(math.log10(most))
-    return next(m * power for m in (5, 2, 1) if m * power <= most * (1 + 1e-9))
+    power = 1.0
+    while power > most:
+        power /= 10
+    while 10 * power <= most:
+        power *= 10
+    return next(m * power for m in (5, 2, 1) if m * power <= most)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The preview's part of the tab "sardf", and the buttons in it."""
 
+import math
 import textwrap
 from typing import ClassVar
 
@@ -40,7 +41,7 @@ class SARDF_OT_section_plane(bpy.types.Operator):
         plane.empty_display_type = "SINGLE_ARROW"
         plane.empty_display_size = max(1.0, context.scene.cursor.location.length)
         plane.location = context.scene.cursor.location
-        plane.rotation_euler = (1.5707963, 0.0, 0.0)  # its z axis towards the viewer from the front
+        plane.rotation_euler = (math.pi / 2, 0.0, 0.0)  # its z axis points to the front
         context.collection.objects.link(plane)
         settings = context.scene.sardf_preview
         settings.section_object = plane

@@ -4,7 +4,7 @@
 import bpy
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 
-from . import preview, preview_legend, preview_ray
+from . import preview, preview_legend, preview_reading
 
 BESIDE = 18  # pixels from the cursor
 
@@ -96,12 +96,12 @@ def read(region, view, at, scene):
             continue
         inverse = part.matrix.inverted_safe()
         plane = preview.CURRENT.plane(part, settings)
-        point = preview_ray.first_hit(part.scene, inverse @ origin, inverse.to_3x3() @ ray, plane)
+        point = part.scene.first_point(inverse @ origin, inverse.to_3x3() @ ray, plane)
         if point is None:
             continue
         away = (part.matrix @ type(origin)(point) - origin).length
         if away < nearest:
-            nearest, found = away, preview_ray.lines(part.scene, point)
+            nearest, found = away, preview_reading.lines(part.scene, point)
     return found
 
 

@@ -115,7 +115,8 @@ void main() {
   float f = field_at(origin + t * ray);
   if (f < 0.0) {
     on_cut = false;
-    float reach = length(part.cell), least = 0.3 * min(part.cell.x, min(part.cell.y, part.cell.z));
+    float reach = dot(part.cell, vec3(1.0));
+    float least = 0.3 * min(part.cell.x, min(part.cell.y, part.cell.z));
     float before = t, outside = f;
     for (int i = 0; i < 1000 && f < 0.0 && t < end; ++i) {
       before = t;

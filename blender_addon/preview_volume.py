@@ -1,12 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A scene's samples for the preview, made in a worker thread; no bpy here.
-
-`Sampler` takes wishes, makes a coarse volume of each at once and the fine one when no newer wish
-has come for a while; whoever shows them polls `take`.
-"""
+"""What the preview shows of a scene, as arrays: samples, or a coarse mesh; no bpy here."""
 
 import math
-import threading
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,9 +10,7 @@ from typing import Any
 import numpy as np
 
 STAND_IN = 40  # cells of the mesh that stands in for textures
-COARSE = 32  # samples along the longest side of the first picture
 MARGIN = 2  # samples around the bounds, so that the surface lies between samples
-QUIET = 0.15  # seconds without a wish before the fine picture is made
 COLOR = "colour"  # what can be shown: this, "fraction of" a material, or an attribute's name
 FRACTION = "fraction of "
 LARGEST = 1000.0  # of the field in its own unit: half floats hold more, and it is far outside
@@ -44,7 +37,8 @@ def numbers_of(scene):
     return [name for name, of in values.items() if not isinstance(of, dict) and of.ndim == 1]
 
 
-def _check(scene, wish):
+def check(scene, wish):
+    """Raises PreviewError where a wish cannot be shown."""
     if wish.channel in scene.attributes and wish.channel not in numbers_of(scene):
         raise PreviewError(
             f"'{wish.channel}' has several components; attributes that are one number can be shown"
@@ -76,7 +70,7 @@ class Volume:
     """Samples of the drawn solid and its colours over the box from lo to hi (scene units).
 
     counts: samples along x, y and z. field: float32, x fastest, in multiples of `unit` scene units,
-    no steeper than one unit for each diagonal of a cell. color: float32, four for each sample,
+    no steeper than one unit for each sum of a cell's edges. color: float32, four for each sample,
     linear, times alpha. Both are None once they are textures. range: of the number that is shown,
     or of the first component, or None. latency: seconds since the wish.
     """
@@ -130,8 +124,7 @@ def make_volume(scene, wish, resolution, progress=None):
         material=wish.material,
         progress=progress,
     )
-    diagonal = float(np.linalg.norm((hi - lo) / counts))
-    unit = samples["steepness"] * diagonal
+    unit = samples["steepness"] * float(((hi - lo) / counts).sum())
     if not 0 < unit < math.inf:
         unit = 1.0
     values = samples["field"].reshape(-1)
@@ -172,9 +165,9 @@ def make_stand_in(sardf, scene, wish, progress=None):
     """The StandIn of a scene that was read from the wish's source."""
     shown = scene
     *normal, offset = wish.plane
-    length = math.hypot(*normal)
-    if length > 0:
-        point = [-offset * n / length**2 for n in normal]
+    square = sum(n * n for n in normal)
+    if square > 0:
+        point = [-offset * n / square for n in normal]
         shown = scene.section(remove=sardf.half_space(point=point, normal=normal))
     mesh = shown.mesh(resolution=STAND_IN, size=0, progress=progress)
     vertices, faces = mesh.vertices, mesh.faces
@@ -194,150 +187,3 @@ def make_stand_in(sardf, scene, wish, progress=None):
     span = (0.0, 1.0) if wish.channel == "fractions" else span
     latency = time.monotonic() - wish.made
     return StandIn(scene, wish, vertices, faces, colors, values, span, latency)
-
-
-class _Task:
-    """What is still to be made for one key."""
-
-    def __init__(self, wish):
-        self.wish = wish
-        self.scene = None
-        self.is_fine = False  # the coarse volume was made
-        self.dropped = False  # nobody waits for it any more
-
-    @property
-    def resolution(self):
-        return self.wish.resolution if self.is_fine else min(COARSE, self.wish.resolution)
-
-
-class Sampler:
-    """Makes the volumes of some parts, each named by a key, in one worker thread."""
-
-    def __init__(self, sardf):
-        self._sardf = sardf
-        self._changed = threading.Condition()
-        self._open = {}  # key -> _Task; guarded, as all below
-        self._scenes = {}  # key -> ((source, stamp), scene) that was read last
-        self._results = []
-        self._running = None
-        self._last_wish = 0.0
-        self._stopped = False
-        self._thread = threading.Thread(target=self._run, name="sardf preview", daemon=True)
-        self._thread.start()
-
-    @property
-    def busy(self):
-        """Whether anything is still to be made or taken."""
-        with self._changed:
-            return bool(self._open or self._results)
-
-    @property
-    def running(self):
-        """Whether the thread lives."""
-        return self._thread.is_alive()
-
-    def request(self, key, wish):
-        """Replace what was wished for a key. A coarse volume at work is finished first, so that
-        something is seen however fast wishes follow one another."""
-        with self._changed:
-            self._last_wish = time.monotonic()
-            self._open[key] = _Task(wish)
-            if self._running is not None and self._running.is_fine:
-                self._running.dropped = True
-            self._changed.notify_all()
-
-    def forget(self, key):
-        """Make nothing more for a key."""
-        with self._changed:
-            task = self._open.pop(key, None)
-            self._scenes.pop(key, None)
-            if task is not None:
-                task.dropped = True
-            self._results = [result for result in self._results if result[0] != key]
-
-    def wait(self, limit=0.1):
-        """Until there is something to take, or for `limit` seconds."""
-        with self._changed:
-            self._changed.wait_for(lambda: self._results, limit)
-
-    def take(self):
-        """[(key, Volume or Exception), ...] made since the last call, oldest first."""
-        with self._changed:
-            results, self._results = self._results, []
-        return results
-
-    def stop(self, limit=1.0):
-        """End the thread; waits for it, `limit` seconds at most."""
-        with self._changed:
-            self._stopped = True
-            self._open.clear()
-            self._results.clear()
-            if self._running is not None:
-                self._running.dropped = True
-            self._changed.notify_all()
-        self._thread.join(limit)
-
-    def _run(self):
-        while True:
-            found = self._next()
-            if found is None:
-                return
-            key, task = found
-            try:
-                result = self._make(key, task)
-            except self._sardf.Cancelled:
-                with self._changed:
-                    self._running = None
-                continue
-            except Exception as error:  # handed to whoever polls: nothing is swallowed
-                result = error
-            self._finish(key, task, result)
-
-    def _next(self):
-        """(key, task) to work on, coarse ones first; None: the end."""
-        with self._changed:
-            while not self._stopped:
-                coarse = [item for item in self._open.items() if not item[1].is_fine]
-                quiet = self._last_wish + QUIET - time.monotonic()
-                if coarse or (self._open and quiet <= 0):
-                    key, task = coarse[0] if coarse else next(iter(self._open.items()))
-                    task.dropped = False
-                    self._running = task
-                    return key, task
-                self._changed.wait(quiet if self._open else None)
-            return None
-
-    def _make(self, key, task):
-        def go_on(_share):
-            return not task.dropped
-
-        with self._changed:
-            known = self._scenes.get(key)
-        origin = (task.wish.source, task.wish.stamp)
-        if known is not None and known[0] == origin:
-            task.scene = known[1]
-        if task.scene is None:
-            task.scene = read(self._sardf, task.wish.source, go_on)
-            with self._changed:
-                if key in self._open:  # not forgotten meanwhile
-                    self._scenes[key] = (origin, task.scene)
-        _check(task.scene, task.wish)
-        if task.wish.plane is not None:
-            task.is_fine = True
-            return make_stand_in(self._sardf, task.scene, task.wish, go_on)
-        return make_volume(task.scene, task.wish, task.resolution, go_on)
-
-    def _finish(self, key, task, result):
-        with self._changed:
-            self._running = None
-            if self._stopped or task.dropped:
-                return
-            self._results = [old for old in self._results if old[0] != key] + [(key, result)]
-            self._changed.notify_all()
-            if self._open.get(key) is not task:  # a newer wish came
-                return
-            failed = isinstance(result, Exception)
-            if failed or task.resolution >= task.wish.resolution:
-                del self._open[key]
-            else:
-                task.is_fine = True

@@ -4,6 +4,7 @@
 #include "python_progress.hpp"
 #include "sardf/bake_channels.hpp"
 #include "sardf/error.hpp"
+#include "sardf/first_point.hpp"
 
 namespace sardf {
 
@@ -89,6 +90,15 @@ void bind_volume_samples(py::module_& m) {
       "a cut may show them, or 'none'. channel: base_color or another one that bake() knows, with "
       "1 to 3 components; 'fractions' is that of `material`. progress(share) may return False to "
       "cancel, which raises Cancelled.");
+  scene.attr("first_point") = py::cpp_function(
+      [](const Scene& s, const Vec3& origin, const Vec3& direction, const Plane& plane) {
+        return first_point(s, origin, direction, plane);
+      },
+      py::name("first_point"), py::is_method(scene), py::arg("origin"), py::arg("direction"),
+      py::arg("plane") = Plane{}, py::call_guard<py::gil_scoped_release>(),
+      "The first point (x, y, z) of the drawn solid on a ray, or None. plane (a, b, c, d): what "
+      "has a x + b y + c z + d > 0 is cut away, too. A wall thinner along the ray than a "
+      "thousandth of the bounds may be missed.");
   const py::object property = py::module_::import("builtins").attr("property");
   scene.attr("material_colors") =
       property(py::cpp_function(&material_colors, py::is_method(scene)), py::none(), py::none(),

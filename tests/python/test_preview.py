@@ -1,4 +1,4 @@
-"""The preview without Blender: the worker thread, and rays."""
+"""The preview without Blender: the worker thread, and what the probe says."""
 
 import json
 import sys
@@ -13,10 +13,10 @@ from repository import ROOT
 
 sys.path.insert(0, str(ROOT))
 try:
-    from blender_addon import preview_ray, preview_volume
+    from blender_addon import preview_reading, preview_sampler, preview_volume
 finally:
     sys.path.remove(str(ROOT))
-Wish, Sampler = preview_volume.Wish, preview_volume.Sampler
+Wish, Sampler = preview_volume.Wish, preview_sampler.Sampler
 
 LIMIT = 60.0
 
@@ -49,7 +49,7 @@ def test_coarse_comes_first_and_fine_follows(sampler):
     sampler.request("ball", Wish(ball(), resolution=96))
     (key, coarse), (_, fine) = results(sampler, 2)
     assert key == "ball"
-    assert (max(coarse.counts), max(fine.counts)) == (preview_volume.COARSE, 96)
+    assert (max(coarse.counts), max(fine.counts)) == (preview_sampler.COARSE, 96)
     assert fine.scene is coarse.scene
     assert not sampler.busy
     assert 0 < coarse.seconds <= coarse.latency < fine.latency
@@ -90,7 +90,7 @@ def test_the_newest_wish_wins(sampler):
 def test_what_is_new_goes_before_what_is_fine(sampler):
     sampler.request("large", Wish(ball(), resolution=400, cut=True))
     results(sampler, 1)
-    time.sleep(preview_volume.QUIET + 0.05)  # the fine picture is at work
+    time.sleep(preview_sampler.QUIET + 0.05)  # the fine picture is at work
     begun = time.monotonic()
     sampler.request("small", Wish(ball(2), resolution=32))
     (key, _), *_ = results(sampler, 1)
@@ -112,7 +112,7 @@ def test_the_thread_ends_at_once():
     sampler = Sampler(sardf)
     sampler.request("ball", Wish(ball(), resolution=500, cut=True))
     results(sampler, 1)
-    time.sleep(preview_volume.QUIET + 0.1)
+    time.sleep(preview_sampler.QUIET + 0.1)
     begun = time.monotonic()
     sampler.stop(limit=LIMIT)
     assert time.monotonic() - begun < 1  # the core's own limit is 0.1 s; the machine may be busy
@@ -157,30 +157,6 @@ def scene():
     return sardf.Scene.from_json(ball())
 
 
-def test_rays_find_the_first_point(scene):
-    nothing = (0.0, 0.0, 0.0, 0.0)
-    for origin, ray, expected in (
-        ((0, -20, 0), (0, 1, 0), (0, -5, 0)),
-        ((3, -20, 0), (0, 2, 0), (3, -4, 0)),
-        ((20, 20, 20), (-1, -1, -1), np.full(3, 5 / np.sqrt(3))),
-    ):
-        hit = preview_ray.first_hit(scene, origin, ray, nothing)
-        np.testing.assert_allclose(hit, expected, atol=1e-4)
-    assert preview_ray.first_hit(scene, (5.1, -20, 0), (0, 1, 0), nothing) is None
-    assert preview_ray.first_hit(scene, (0, -20, 0), (0, -1, 0), nothing) is None
-
-
-def test_rays_meet_the_cut(scene):
-    front_away = (0.0, -3.0, 0.0, 3.0)  # y < 1 is cut away
-    hit = preview_ray.first_hit(scene, (2, -20, 1), (0, 1, 0), front_away)
-    np.testing.assert_allclose(hit, (2, 1, 1), atol=1e-9)
-    back_away = (0.0, 1.0, 0.0, 4.5)  # y > -4.5
-    assert preview_ray.first_hit(scene, (3, -20, 0), (0, 1, 0), back_away) is None
-    np.testing.assert_allclose(
-        preview_ray.first_hit(scene, (0, -20, 0), (0, 1, 0), back_away), (0, -5, 0), atol=1e-4
-    )
-
-
 def test_probe_says_what_is_there(scene):
-    told = preview_ray.lines(scene, (0.0, 0.0, 0.0))
+    told = preview_reading.lines(scene, (0.0, 0.0, 0.0))
     assert told == ["(0, 0, 0) cm", "distance 5 cm", "red 50.0 %", "steel 50.0 %"]

@@ -115,3 +115,12 @@ def test_material_colors_are_linear():
     colors = scene.material_colors
     assert list(colors) == ["a", "b"]
     np.testing.assert_allclose(colors["a"], (1, ((128 / 255 + 0.055) / 1.055) ** 2.4, 0), rtol=1e-9)
+
+
+def test_first_point_on_a_ray(scene):
+    assert scene.first_point((1, 2, 9), (0, 0, -1)) == pytest.approx((1, 2, 3), abs=1e-6)
+    hit = scene.first_point((1, -9, 3), (0, 1, 0), plane=(0, -1, 0, 1))  # y < 1 is cut away
+    assert hit == pytest.approx((1, 1, 3), abs=1e-6)
+    assert scene.first_point((9, 9, 9), (1, 0, 0)) is None
+    with pytest.raises(sardf.Error, match="the direction is"):
+        scene.first_point((0, 0, 0), (0, 0, 0))

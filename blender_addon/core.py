@@ -98,7 +98,7 @@ def _reason_against(folder):
 
 def _tags(*places):
     """Of the compiled modules in folders: _core.cpython-311-x86_64-linux-gnu.so -> cp311."""
-    names = [file.name.split(".")[1] for place in places for file in place.glob("_core.*")]
+    names = [file.name.split(".")[1] for place in places for file in place.glob("_core.*.*")]
     return sorted({name.split("-x86")[0].replace("cpython-", "cp") for name in names})
 
 

@@ -264,6 +264,7 @@ std::vector<Piece> pieces_of(const Expression& solid, const BoundingBox& bounds,
     if (has_surface || regions.size() == 1) out.push_back(std::move(piece));
   }
   if (out.empty()) out.push_back({bounds, solid});
+  if (options.progress && !options.progress(1)) throw Cancelled();
   return out;
 }
 

@@ -6,11 +6,14 @@
 #include "povray_gen/scene_samples.hpp"
 #include "povray_gen/vector_text.hpp"
 #include "sardf/error.hpp"
+#include "sardf/pulse.hpp"
 
 namespace sardf::povray {
 
 namespace {
 
+// The share of the progress that samples take; the rest goes into the pieces.
+constexpr double share_of_samples = 0.8;
 // Half the step of our central differences: rounding and curvature both stay below 1e-9.
 constexpr double normal_step = 1e-5;
 
@@ -210,14 +213,17 @@ SceneText scene_text(const PovrayScene& exact_scene, const std::string& include_
     throw Error("POV-Ray cannot include a file whose name has a quotation mark", include_name);
   }
   SceneText out;
+  SamplingOptions first = sampling;
+  first.progress = part_of(sampling.progress, 0, share_of_samples);
   const SceneSamples samples =
-      sample_scene(exact_scene, std::filesystem::path(include_name).stem(), sampling);
+      sample_scene(exact_scene, std::filesystem::path(include_name).stem(), first);
   const PovrayScene& scene = samples.scene;
   out.sampled = samples.functions;
   out.errors = samples.errors;
   out.sentences = samples.sentences();
   const GradientBound gradient = gradient_of(scene, scene.solid == exact_scene.solid);
-  const std::vector<Piece> pieces = isosurface_pieces(scene, gradient, sampling.progress);
+  const std::vector<Piece> pieces =
+      isosurface_pieces(scene, gradient, part_of(sampling.progress, share_of_samples, 1));
   const GradientBound drawn = pieces.size() == 1 ? smaller(pieces[0], gradient) : gradient;
   Names names(scene.title);
   const Identifiers ids(names);

@@ -57,6 +57,8 @@ struct Helix : Feature {
     frame_.set(center, axis);
     rise_ = pitch / turn;
     steepness_ = radius / rise_ / rise_;
+    start_ = place_at(start.value_or(0) * degree);
+    end_ = place_at(end.value_or(0) * degree);
   }
 
   template <class T>
@@ -88,11 +90,13 @@ struct Helix : Feature {
         at_end = select(is_low, at_start, at_end);
       }
     }
+    // The ends themselves: counted from many turns away, their angle would be rounded too much.
     const auto clamped = [&](T turns, T tau) {
       const T whole = T(turn) * turns;
-      if (start) tau = max(tau, first - whole);
-      if (end) tau = min(tau, last - whole);
-      return length_to(at, place, turns, tau);
+      T nearby = length_to(at, place, turns, tau);
+      if (start) nearby = select(tau < first - whole, distance_between(at, start_), nearby);
+      if (end) nearby = select(last - whole < tau, distance_between(at, end_), nearby);
+      return nearby;
     };
     return min(clamped(nearest, found), min(clamped(at_end, nearest_in_turn(place, at_end)),
                                             clamped(before, nearest_in_turn(place, before))));
@@ -135,6 +139,15 @@ struct Helix : Feature {
     return tau;
   }
 
+  Vec3 place_at(double angle) const {
+    return {radius * std::cos(angle), radius * std::sin(angle), rise_ * angle};
+  }
+
+  template <class T>
+  static T distance_between(const std::array<T, 3>& at, const Vec3& place) {
+    return length(at[0] - T(place[0]), at[1] - T(place[1]), at[2] - T(place[2]));
+  }
+
   template <class T>
   T length_to(const std::array<T, 3>& at, const Place<T>& place, T turns, T tau) const {
     // Frozen once more: on the axis the angle's derivative is none even of a constant.
@@ -146,6 +159,7 @@ struct Helix : Feature {
   Frame frame_;
   double rise_ = 1;       // along the axis for one radian
   double steepness_ = 1;  // radius / rise²
+  Vec3 start_{}, end_{};  // in the frame
 };
 
 using HelixOps = OpList<Helix>;

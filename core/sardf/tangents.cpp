@@ -84,7 +84,7 @@ class Tangents {
   void add_wedge(uint32_t face, const std::array<uint32_t, 3>& triangle, uint32_t at,
                  std::vector<Wedge>& wedges) const {
     Wedge wedge{face + triangle[at], face + triangle[(at + 1) % 3], face + triangle[(at + 2) % 3],
-               Vec3{}, 0};
+                Vec3{}, 0};
     const std::array<float, 2> t0 = uv(wedge.corner), t1 = uv(wedge.next), t2 = uv(wedge.previous);
     const double u1 = double(t1[0]) - t0[0], v1 = double(t1[1]) - t0[1];
     const double u2 = double(t2[0]) - t0[0], v2 = double(t2[1]) - t0[1];

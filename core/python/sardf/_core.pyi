@@ -137,11 +137,15 @@ class Scene:
         """
     def bake(self, mesh: Mesh, size: typing.SupportsInt | typing.SupportsIndex = 2048, channels: collections.abc.Sequence[str] = ['base_color', 'fractions'], gutter: typing.SupportsInt | typing.SupportsIndex = 8, sections: bool = True, progress: typing.Any = None) -> dict:
         """
-        {channel: float32 (size, size, components)}, row 0 at the top, linear. Channels: base_color, roughness, metallic, emission, fractions (as fractions_1, ... of three materials each), field, and attributes by name.
+        {channel: float32 (size, size, components)}, row 0 at the top, linear. Channels: base_color, roughness, metallic, emission, fractions (as fractions_1, ... of three materials each), field, normal (a tangent-space normal map, for which the mesh needs normals), and attributes by name.
         """
     def camera(self, width: typing.SupportsInt | typing.SupportsIndex = 640, height: typing.SupportsInt | typing.SupportsIndex = 480) -> typing.Any:
         """
         A camera that frames the object: matrix_world, lens (mm), sensor_width, ...
+        """
+    def first_point(self, origin: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"], direction: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"], plane: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(4)"] = [0.0, 0.0, 0.0, 0.0]) -> typing.Annotated[list[float], "FixedSize(3)"] | None:
+        """
+        The first point (x, y, z) of the drawn solid on a ray, or None. plane (a, b, c, d): what has a x + b y + c z + d > 0 is cut away, too. A wall thinner along the ray than a thousandth of the bounds may be missed.
         """
     def fractions(self, points: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], outside: str = 'extend') -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -158,6 +162,10 @@ class Scene:
     def render(self, width: typing.SupportsInt | typing.SupportsIndex = 640, height: typing.SupportsInt | typing.SupportsIndex = 480, look: str = 'shaded', camera: typing.Any = None, tolerance: typing.SupportsFloat | typing.SupportsIndex | None = None, background: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"] | None = None, depth: bool = False, normals: bool = False, samples: typing.SupportsInt | typing.SupportsIndex = 1, threads: typing.SupportsInt | typing.SupportsIndex = 0, progress: typing.Any = None) -> numpy.typing.NDArray[numpy.float32]:
         """
         A picture by certified ray casting: float32 (height, width, 4), row 0 at the top, linear colour times alpha, then alpha. look: shaded, flat (the colours alone) or normals (0.5 + 0.5 n). camera: as camera() gives it. tolerance (scene units): no stretch of the solid that is longer along a ray is missed; none: 1e-4 of the bounds' diagonal. background: linear (r, g, b); none: alpha is 0 there. depth: one channel more, the depth along the view in scene units, inf where nothing is. normals: three channels more, the outward unit normal. samples: rays along each side of a pixel, 1 to 8, more smooth edges. threads: at most so many, 0: all; the picture does not depend on it.
+        """
+    def sample_volume(self, lo: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"], hi: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"], counts: typing.Annotated[collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], "FixedSize(3)"], sections: bool = True, colors: str = 'surface', channel: str = 'base_color', material: str = '', progress: typing.Any = None) -> dict:
+        """
+        Samples for 3-D textures, on a grid of counts = (nx, ny, nz) cells over the box from lo to hi (scene units), in the cells' middles. {'field': float32 (nz, ny, nx), of the drawn solid or, without sections, of the whole one, positive inside; 'color': float32 (nz, ny, nx, 4), linear, its last component 1 where there is a colour and all 0 elsewhere; 'steepness': the interpolated field's largest slope at most; 'range': least and largest first component, or None}. colors: 'surface', where interpolation on the surface needs them, 'inside', wherever a cut may show them, or 'none'. channel: base_color or another one that bake() knows, with 1 to 3 components; 'fractions' is that of `material`. progress(share) may return False to cancel, which raises Cancelled.
         """
     def save(self, path: str) -> None:
         """
@@ -198,6 +206,11 @@ class Scene:
     def fields(self) -> dict:
         """
         {name: Field} of the scene's named fields.
+        """
+    @property
+    def material_colors(self) -> dict:
+        """
+        {name: (red, green, blue)}, linear, in order.
         """
     @property
     def materials(self) -> list[str]:

@@ -38,4 +38,5 @@ def register():
 
 
 def unregister():
-    preview.providers.remove(from_parts)
+    if from_parts in preview.providers:  # scripts may have put others in its place
+        preview.providers.remove(from_parts)

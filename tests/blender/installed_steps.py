@@ -14,18 +14,8 @@ from pathlib import Path
 
 import bpy
 
-NEW = bpy.app.version >= (4, 2)
-MODULE = "bl_ext.user_default.sardf_blender" if NEW else "sardf_blender"
-
-
-def install(zip_file):
-    if NEW:
-        bpy.ops.extensions.package_install_files(
-            filepath=zip_file, repo="user_default", enable_on_install=True, overwrite=True
-        )
-    else:
-        bpy.ops.preferences.addon_install(overwrite=True, filepath=zip_file)
-        bpy.ops.preferences.addon_enable(module=MODULE)
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from installing import MODULE, install
 
 
 def refused(zip_file, scene_file):

@@ -14,16 +14,8 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-
-def install(zip_file):
-    if hasattr(bpy.ops.extensions, "package_install_files") and bpy.app.version >= (4, 2):
-        bpy.ops.extensions.package_install_files(
-            filepath=zip_file, repo="user_default", enable_on_install=True, overwrite=True
-        )
-        return "bl_ext.user_default.sardf_blender"
-    bpy.ops.preferences.addon_install(overwrite=True, filepath=zip_file)
-    bpy.ops.preferences.addon_enable(module="sardf_blender")
-    return "sardf_blender"
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from installing import MODULE, install
 
 
 def contents():
@@ -50,9 +42,8 @@ def update_error():
 
 def main(zip_file, scene_file, result_file):
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    module = install(zip_file)
-    # The environment of the bpy module has a sardf of its own; the zip's wheel is what we test.
-    sys.path.sort(key=lambda place: "/extensions/.local/" not in place)
+    install(zip_file)
+    module = MODULE
     preview = importlib.import_module(f"{module}.preview")
     result = {"before": contents()}
     bpy.context.scene.sardf.filepath = scene_file

@@ -2,7 +2,6 @@
 
 import json
 import subprocess
-import sys
 import zipfile
 
 import numpy as np
@@ -13,6 +12,7 @@ from blender_runs import (
     SCRIPTS,
     STEEL,
     VERSIONS,
+    build_zips,
     environment,
     expected_colors,
     linear,
@@ -26,19 +26,18 @@ WIDTH, HEIGHT = 1000, 700
 
 
 @pytest.fixture(scope="module")
-def zip_file(tmp_path_factory):
+def zips(tmp_path_factory):
+    """{Blender's version: the zip that it wants}."""
     (wheel,) = (ROOT / "build/dist").glob("sardf-*.whl")
-    folder = tmp_path_factory.mktemp("dist")
-    command = [sys.executable, str(ROOT / "blender_addon/build.py"), "--wheel", str(wheel)]
-    subprocess.run([*command, "-o", str(folder)], check=True, capture_output=True)
-    return next(folder.glob("*.zip"))
+    extension, legacy = build_zips(wheel, tmp_path_factory.mktemp("dist"))
+    return {"3.4.1": legacy, "5.0.1": extension}
 
 
 @pytest.fixture(scope="module")
-def window(zip_file, tmp_path_factory):
+def window(zips, tmp_path_factory):
     """What gui_preview.py found."""
     folder = tmp_path_factory.mktemp("window")
-    with zipfile.ZipFile(zip_file) as archive:
+    with zipfile.ZipFile(zips["3.4.1"]) as archive:
         archive.extractall(folder / "user/scripts/addons")
     SCREENSHOTS.mkdir(parents=True, exist_ok=True)
     scene = write_scene(folder, GRADED_SPHERE)
@@ -179,10 +178,12 @@ def test_undo_another_file_and_disabling_end_the_work(window):
 
 
 @pytest.mark.parametrize("version", VERSIONS)
-def test_a_mesh_stands_in_without_a_window(version, zip_file, tmp_path):
+def test_a_mesh_stands_in_without_a_window(version, zips, tmp_path):
     scene, result_file = write_scene(tmp_path, GRADED_SPHERE), tmp_path / "result.json"
     script = SCRIPTS / "preview_stand_in.py"
-    done = run_script(version, script, zip_file, scene, result_file, user_folder=tmp_path / "user")
+    done = run_script(
+        version, script, zips[version], scene, result_file, user_folder=tmp_path / "user"
+    )
     assert result_file.is_file(), done.stdout + done.stderr
     assert "Traceback" not in done.stdout + done.stderr
     result = json.loads(result_file.read_text())

@@ -53,14 +53,14 @@ def test_nothing_is_left_for_later():
     assert not found
 
 
-def test_blender_is_imported_only_by_its_addon_and_the_tests():
+def test_blender_is_imported_only_by_its_addon_tests_and_benchmarks():
     blender = ("bpy", "bmesh", "mathutils", "gpu", "bl_operators")
     importing = {
         name_of(path).split("/")[0]
         for path in files(".", ".py")
         if any(module.split(".")[0] in blender for module in imported_modules(path))
     }
-    assert importing <= {"blender_addon", "tests"}
+    assert importing <= {"blender_addon", "tests", "bench"}
 
 
 def test_blender_addon_holds_no_mathematics():

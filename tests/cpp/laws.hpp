@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "sanitized.hpp"
 #include "sardf/constructor.hpp"
 #include "sardf/error.hpp"
 #include "sardf/evaluate.hpp"
@@ -29,13 +30,7 @@ inline uint64_t seed() {
 
 /// The number of cases to run where `count` is the full number.
 inline int effort(int count) {
-#if defined(__SANITIZE_ADDRESS__)
-  double share = 0.1;
-#elif defined(__has_feature)
-  double share = __has_feature(address_sanitizer) ? 0.1 : 1;
-#else
-  double share = 1;
-#endif
+  double share = is_sanitized ? 0.1 : 1;
   if (const char* text = std::getenv("SARDF_EFFORT")) share *= std::strtod(text, nullptr);
   return std::max(1, int(count * share));
 }

@@ -1,49 +1,31 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Drives the installed add-on in a window with mouse and keyboard, as a user would.
 
-Run in an X server: blender --factory-startup -P gui_bake.py -- SCENE FOLDER. Writes result.json and
-screenshots into FOLDER. Each step waits for what it expects, no longer than its limit.
+Run in an X server: blender --factory-startup -P gui_bake.py -- SCENE FOLDER RESULT.json; see
+gui_window.py.
 """
 
-import json
-import os
 import subprocess
 import sys
 import time
-import traceback
 from pathlib import Path
 
 import bpy
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 
-SCENE, FOLDER = sys.argv[sys.argv.index("--") + 1 :]
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import gui_window
+from gui_window import TimeOut, drive, result, screenshot, view
+
+SCENE = sys.argv[-3]
 TICK = 0.05  # seconds between two looks at Blender's state
 LIMIT = 120.0  # seconds to wait for anything at most; llvmpipe on a busy machine is slow
 BUTTON_GREY = 70  # of 255, in the standard theme: the panel is darker, its buttons are brighter
-result = {"errors": []}
 drawn = {"panel": 0}
 
 
-class TimeOut(Exception):
-    pass
-
-
 def until(condition, what, limit=LIMIT):
-    """Give Blender time until `condition()` holds."""
-    end = time.monotonic() + limit
-    while not condition():
-        if time.monotonic() > end:
-            screenshot("time_out")
-            raise TimeOut(f"waited {limit:.0f} s for {what}")
-        yield
-
-
-def view():
-    window = bpy.context.window_manager.windows[0]
-    area = max(
-        (a for a in window.screen.areas if a.type == "VIEW_3D"), key=lambda a: a.width * a.height
-    )
-    return window, area, {region.type: region for region in area.regions}
+    return gui_window.until(condition, what, limit)
 
 
 def click(x, y):
@@ -51,10 +33,6 @@ def click(x, y):
     height = view()[0].height
     command = ["xdotool", "mousemove", str(x), str(height - y), "click", "1"]
     subprocess.run(command, check=True)
-
-
-def screenshot(name):
-    subprocess.run(["import", "-window", "root", f"{FOLDER}/{name}.png"], check=True)
 
 
 def contents():
@@ -205,23 +183,4 @@ def undone_bake():
     result["objects after undo"] = sorted(item.name for item in bpy.context.scene.objects)
 
 
-def tick(steps):
-    try:
-        next(steps)
-        return TICK
-    except StopIteration:
-        leave()
-    except Exception:
-        traceback.print_exc()
-        result["errors"].append(traceback.format_exc())
-        leave()
-
-
-def leave():
-    Path(FOLDER, "result.json").write_text(json.dumps(result, indent=1))
-    sys.stdout.flush()
-    os._exit(0)  # quitting asks about unsaved changes
-
-
-STEPS = scenario()
-bpy.app.timers.register(lambda: tick(STEPS), first_interval=1.0, persistent=True)
+drive(scenario(), TICK)

@@ -1,55 +1,34 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Drives the installed add-on's preview in a window.
 
-Run in an X server: blender --factory-startup -P gui_preview.py -- SCENE FOLDER. Writes
-preview.json and screenshots into FOLDER. Each step waits for what it expects, no longer than its
-limit.
+Run in an X server: blender --factory-startup -P gui_preview.py -- SCENE FOLDER RESULT.json; see
+gui_window.py.
 """
 
 import json
-import os
 import subprocess
 import sys
 import threading
 import time
-import traceback
 from pathlib import Path
 
 import bpy
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from mathutils import Matrix, Vector
 
-SCENE, FOLDER = sys.argv[sys.argv.index("--") + 1 :]
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import gui_window
+from gui_window import drive, result, screenshot, view
+
+SCENE = sys.argv[-3]
 TICK = 0.02  # seconds between two looks at Blender's state
 LIMIT = 60.0  # seconds to wait for anything at most; llvmpipe on a busy machine is slow
-result = {"errors": [], "drags": [], "drag sampling": []}
+result.update({"drags": [], "drag sampling": []})
 drawn = {}  # key of a part -> (wish, samples along its longest side) that was drawn last
 
 
-class TimeOut(Exception):
-    pass
-
-
 def until(condition, what, limit=LIMIT):
-    """Give Blender time until `condition()` holds."""
-    end = time.monotonic() + limit
-    while not condition():
-        if time.monotonic() > end:
-            screenshot("preview_time_out")
-            raise TimeOut(f"waited {limit:.0f} s for {what}")
-        yield
-
-
-def view():
-    window = bpy.context.window_manager.windows[0]
-    area = max(
-        (a for a in window.screen.areas if a.type == "VIEW_3D"), key=lambda a: a.width * a.height
-    )
-    return window, area, {region.type: region for region in area.regions}
-
-
-def screenshot(name):
-    subprocess.run(["import", "-window", "root", f"{FOLDER}/{name}.png"], check=True)
+    return gui_window.until(condition, what, limit)
 
 
 def pixel(point):
@@ -309,24 +288,5 @@ def interrupted(preview):
         yield
 
 
-def tick(steps):
-    try:
-        next(steps)
-        return TICK
-    except StopIteration:
-        leave()
-    except Exception:
-        traceback.print_exc()
-        result["errors"].append(traceback.format_exc())
-        leave()
-
-
-def leave():
-    Path(FOLDER, "preview.json").write_text(json.dumps(result, indent=1))
-    sys.stdout.flush()
-    os._exit(0)  # quitting asks about unsaved changes
-
-
 bpy.context.preferences.view.show_splash = False  # before the window is drawn for the first time
-STEPS = scenario()
-bpy.app.timers.register(lambda: tick(STEPS), first_interval=1.0, persistent=True)
+drive(scenario(), TICK)

@@ -7,21 +7,14 @@ the material after each bake, and "error", what a wrong name makes the operator 
 """
 
 import importlib
-import importlib.util
 import json
 import sys
 from pathlib import Path
 
 import bpy
 
-
-def load_addon(folder):
-    spec = importlib.util.spec_from_file_location(
-        "sardf_blender", Path(folder) / "__init__.py", submodule_search_locations=[folder]
-    )
-    sys.modules["sardf_blender"] = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(sys.modules["sardf_blender"])
-    sys.modules["sardf_blender"].register()
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import addon_folder
 
 
 def state(part):
@@ -40,7 +33,7 @@ def state(part):
 
 def main(folder, scene_file, result_file, *names):
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    load_addon(folder)
+    addon_folder.load(folder)
     settings = bpy.context.scene.sardf
     settings.filepath, settings.resolution, settings.size = scene_file, 8, "256"
     properties = importlib.import_module("sardf_blender.properties")

@@ -12,6 +12,7 @@ from repository import ROOT
 BPY_PYTHON = ROOT / ".venv-bpy/bin/python"
 HEADLESS = ROOT / "blender_addon/headless.py"
 SCRIPTS = ROOT / "tests/blender"
+SCREENSHOTS = ROOT / "build/screenshots"
 VERSIONS = ("3.4.1", "5.0.1")
 
 RED, STEEL = "#c03020", "#8a8f98"
@@ -124,3 +125,33 @@ def run_script(version, script, *arguments, limit=300, **keywords):
             process.kill()
             raise
     return subprocess.CompletedProcess(process.args, process.returncode, output, errors)
+
+
+def run_in_window(script, *arguments, user_folder, size, limit):
+    """What tests/blender/gui_window.py's `result` became in a window of Blender 3.4.1 of `size`
+    (width, height), and the finished process. Screenshots are in SCREENSHOTS."""
+    SCREENSHOTS.mkdir(parents=True, exist_ok=True)
+    user_folder.mkdir(parents=True, exist_ok=True)
+    result_file = user_folder / f"{script.stem.removeprefix('gui_')}.json"
+    width, height = map(str, size)
+    words = [str(word) for word in (*arguments, SCREENSHOTS, result_file)]
+    done = subprocess.run(
+        ["xvfb-run", "-a", "-s", f"-screen 0 {width}x{height}x24",
+         "blender", "--factory-startup", "--window-geometry", "0", "0", width, height,
+         "-P", str(script), "--", *words],
+        env=environment(user_folder), capture_output=True, text=True, timeout=limit,
+    )  # fmt: skip
+    assert result_file.is_file(), done.stdout + done.stderr
+    result = json.loads(result_file.read_text())
+    assert not result["errors"], result["errors"][0]
+    return result, done
+
+
+def run_check(version, folder, check, *arguments):
+    """What tests/blender/CHECK.py returns, run by part_run.py with the checkout's add-on."""
+    result = folder / f"{check}.json"
+    words = (ROOT / "blender_addon", result, check, *arguments)
+    done = run_script(version, SCRIPTS / "part_run.py", *words, user_folder=folder / "user")
+    assert result.is_file(), done.stdout + done.stderr
+    assert "Traceback" not in done.stdout + done.stderr, done.stdout + done.stderr
+    return json.loads(result.read_text())

@@ -12,26 +12,15 @@ import numpy as np
 import pytest
 from blender_runs import (
     GRADED_SPHERE,
+    SCREENSHOTS,
     SCRIPTS,
     VERSIONS,
-    build_zips,
-    environment,
     expected_colors,
+    run_in_window,
     run_script,
     write_scene,
 )
 from repository import ROOT
-
-SCREENSHOTS = ROOT / "build/screenshots"
-
-
-@pytest.fixture(scope="module")
-def zips(tmp_path_factory):
-    """Of the wheel that scripts/setup built: {Blender's version: the zip that it wants}."""
-    wheels = list((ROOT / "build/dist").glob("sardf-*.whl"))
-    assert len(wheels) == 1, "scripts/setup builds one wheel"
-    extension, legacy = build_zips(wheels[0], tmp_path_factory.mktemp("dist"))
-    return {"3.4.1": legacy, "5.0.1": extension}
 
 
 @pytest.mark.parametrize("version", VERSIONS)
@@ -68,20 +57,9 @@ def window(zips, tmp_path_factory):
     user = folder / "user"
     with zipfile.ZipFile(zips["3.4.1"]) as archive:
         archive.extractall(user / "scripts/addons")
-    SCREENSHOTS.mkdir(parents=True, exist_ok=True)
     scene = write_scene(folder, GRADED_SPHERE)
-    done = subprocess.run(
-        ["xvfb-run", "-a", "-s", "-screen 0 1280x800x24",
-         "blender", "--factory-startup", "--window-geometry", "0", "0", "1280", "800",
-         "-P", str(SCRIPTS / "gui_bake.py"), "--", str(scene), str(SCREENSHOTS)],
-        env=environment(user), capture_output=True, text=True, timeout=400,
-    )  # fmt: skip
-    result_file = SCREENSHOTS / "result.json"
-    assert result_file.is_file(), done.stdout + done.stderr
-    result = json.loads(result_file.read_text())
-    result_file.unlink()
-    assert not result["errors"], result["errors"][0]
-    return result
+    script = SCRIPTS / "gui_bake.py"
+    return run_in_window(script, scene, user_folder=user, size=(1280, 800), limit=400)[0]
 
 
 def test_a_click_on_bake_makes_the_part_in_one_undo_step(window):

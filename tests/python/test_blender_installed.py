@@ -13,7 +13,6 @@ from blender_runs import (
     HEADLESS,
     SCRIPTS,
     VERSIONS,
-    build_zips,
     environment,
     write_scene,
 )
@@ -24,14 +23,6 @@ READ_ONLY = """
 mount --bind "$0" "$0"; mount -o remount,ro,bind "$0"
 ! touch "$0/written" 2>/dev/null; exec "$@"
 """
-
-
-@pytest.fixture(scope="module")
-def zips(tmp_path_factory):
-    wheels = list((ROOT / "build/dist").glob("sardf-*.whl"))
-    assert len(wheels) == 1, "scripts/setup builds one wheel"
-    extension, legacy = build_zips(wheels[0], tmp_path_factory.mktemp("dist"))
-    return {"3.4.1": legacy, "5.0.1": extension}
 
 
 @pytest.fixture(scope="module")

@@ -5,9 +5,8 @@ import json
 import numpy as np
 import pytest
 import sardf
-from blender_runs import VERSIONS
+from blender_runs import VERSIONS, run_check
 from repository import ROOT
-from test_blender_parts import run_check
 
 LINED_BORE = ROOT / "scenes/lined_bore.json"
 

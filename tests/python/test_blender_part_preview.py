@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from blender_runs import VERSIONS
-from test_blender_parts import run_check
+from blender_runs import VERSIONS, run_check
 
 CELL = 0.2  # a stand-in's cells are smaller
 

@@ -6,7 +6,7 @@ import os
 import numpy as np
 import pytest
 import sardf
-from blender_runs import SCRIPTS, VERSIONS, run_script
+from blender_runs import VERSIONS, run_check
 from repository import ROOT
 from scene_json import load_document
 
@@ -14,16 +14,6 @@ ADDON = ROOT / "blender_addon"
 SCENES = [*sorted((ROOT / "scenes").glob("*.json")), ROOT / "tests/scenes/everything.json"]
 
 QUICK = [path for path in SCENES if path.stem != "cube_spiral"]  # it solves for thousands
-
-
-def run_check(version, folder, check, *arguments):
-    """What tests/blender/CHECK.py returns."""
-    result = folder / f"{check}.json"
-    words = (ADDON, result, check, *arguments)
-    done = run_script(version, SCRIPTS / "part_run.py", *words, user_folder=folder / "user")
-    assert result.is_file(), done.stdout + done.stderr
-    assert "Traceback" not in done.stdout + done.stderr, done.stdout + done.stderr
-    return json.loads(result.read_text())
 
 
 @pytest.fixture(scope="module", params=VERSIONS)

@@ -9,28 +9,18 @@ import pytest
 from blender_runs import (
     GRADED_SPHERE,
     RED,
+    SCREENSHOTS,
     SCRIPTS,
     STEEL,
     VERSIONS,
-    build_zips,
-    environment,
     expected_colors,
     linear,
+    run_in_window,
     run_script,
     write_scene,
 )
-from repository import ROOT
 
-SCREENSHOTS = ROOT / "build/screenshots"
 WIDTH, HEIGHT = 1000, 700
-
-
-@pytest.fixture(scope="module")
-def zips(tmp_path_factory):
-    """{Blender's version: the zip that it wants}."""
-    (wheel,) = (ROOT / "build/dist").glob("sardf-*.whl")
-    extension, legacy = build_zips(wheel, tmp_path_factory.mktemp("dist"))
-    return {"3.4.1": legacy, "5.0.1": extension}
 
 
 @pytest.fixture(scope="module")
@@ -39,19 +29,11 @@ def window(zips, tmp_path_factory):
     folder = tmp_path_factory.mktemp("window")
     with zipfile.ZipFile(zips["3.4.1"]) as archive:
         archive.extractall(folder / "user/scripts/addons")
-    SCREENSHOTS.mkdir(parents=True, exist_ok=True)
     scene = write_scene(folder, GRADED_SPHERE)
-    done = subprocess.run(
-        ["xvfb-run", "-a", "-s", f"-screen 0 {WIDTH}x{HEIGHT}x24",
-         "blender", "--factory-startup", "--window-geometry", "0", "0", str(WIDTH), str(HEIGHT),
-         "-P", str(SCRIPTS / "gui_preview.py"), "--", str(scene), str(SCREENSHOTS)],
-        env=environment(folder / "user"), capture_output=True, text=True, timeout=500,
+    result, done = run_in_window(
+        SCRIPTS / "gui_preview.py", scene,
+        user_folder=folder / "user", size=(WIDTH, HEIGHT), limit=500,
     )  # fmt: skip
-    result_file = SCREENSHOTS / "preview.json"
-    assert result_file.is_file(), done.stdout + done.stderr
-    result = json.loads(result_file.read_text())
-    result_file.unlink()
-    assert not result["errors"], result["errors"][0]
     assert "Traceback" not in done.stdout + done.stderr
     return result
 

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the scripts gui_*.py share, which drive Blender in a window under an X server. Their last
+two arguments are a folder for screenshots and RESULT.json.
+
+A script is a generator: each yield gives Blender time, and it waits for what it expects by `until`.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import time
+import traceback
+from pathlib import Path
+
+import bpy
+
+FOLDER, RESULT = sys.argv[-2:]
+result = {"errors": []}
+
+
+class TimeOut(Exception):
+    pass
+
+
+def until(condition, what, limit):
+    """Give Blender time until `condition()` holds, no longer than `limit` seconds."""
+    end = time.monotonic() + limit
+    while not condition():
+        if time.monotonic() > end:
+            screenshot(f"{Path(RESULT).stem}_time_out")
+            raise TimeOut(f"waited {limit:.0f} s for {what}")
+        yield
+
+
+def view():
+    window = bpy.context.window_manager.windows[0]
+    area = max(
+        (a for a in window.screen.areas if a.type == "VIEW_3D"), key=lambda a: a.width * a.height
+    )
+    return window, area, {region.type: region for region in area.regions}
+
+
+def screenshot(name):
+    subprocess.run(["import", "-window", "root", f"{FOLDER}/{name}.png"], check=True)
+
+
+def drive(steps, tick):
+    """Run the steps, one every `tick` seconds; end Blender after the last one, or with what went
+    wrong."""
+    bpy.app.timers.register(lambda: _step(steps, tick), first_interval=1.0, persistent=True)
+
+
+def _step(steps, tick):
+    try:
+        next(steps)
+        return tick
+    except StopIteration:
+        _leave()
+    except Exception:
+        traceback.print_exc()
+        result["errors"].append(traceback.format_exc())
+        _leave()
+
+
+def _leave():
+    Path(RESULT).write_text(json.dumps(result, indent=1))
+    sys.stdout.flush()
+    os._exit(0)  # quitting asks about unsaved changes

@@ -1,0 +1,14 @@
+"""Fixtures that several files use."""
+
+import pytest
+from blender_runs import build_zips
+from repository import ROOT
+
+
+@pytest.fixture(scope="session")
+def zips(tmp_path_factory):
+    """Of the wheel that scripts/setup built: {Blender's version: the zip that it wants}."""
+    wheels = list((ROOT / "build/dist").glob("sardf-*.whl"))
+    assert len(wheels) == 1, "scripts/setup builds one wheel"
+    extension, legacy = build_zips(wheels[0], tmp_path_factory.mktemp("dist"))
+    return {"3.4.1": legacy, "5.0.1": extension}

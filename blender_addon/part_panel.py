@@ -74,6 +74,16 @@ class _Panel:
         self.draw_part(context, part)
 
 
+class _ListPanel(_Panel):
+    """Of one of a part's lists; there is none without a part."""
+
+    bl_parent_id = "SARDF_PT_part"
+
+    @classmethod
+    def poll(cls, context):
+        return part_objects.part_above(context.active_object) is not None
+
+
 class SARDF_PT_part(_Panel, bpy.types.Panel):
     bl_idname = "SARDF_PT_part"
     bl_label = "Part"
@@ -118,14 +128,9 @@ class SARDF_PT_part(_Panel, bpy.types.Panel):
                 draw_primitive(column, entry.object.sardf_primitive)
 
 
-class SARDF_PT_materials(_Panel, bpy.types.Panel):
+class SARDF_PT_materials(_ListPanel, bpy.types.Panel):
     bl_idname = "SARDF_PT_materials"
     bl_label = "Materials"
-    bl_parent_id = "SARDF_PT_part"
-
-    @classmethod
-    def poll(cls, context):
-        return part_objects.part_above(context.active_object) is not None
 
     def draw_part(self, _context, part):
         layout, settings = self.layout, part.sardf_part
@@ -139,14 +144,9 @@ class SARDF_PT_materials(_Panel, bpy.types.Panel):
             column.prop(material, key)
 
 
-class SARDF_PT_features(_Panel, bpy.types.Panel):
+class SARDF_PT_features(_ListPanel, bpy.types.Panel):
     bl_idname = "SARDF_PT_features"
     bl_label = "Features"
-    bl_parent_id = "SARDF_PT_part"
-
-    @classmethod
-    def poll(cls, context):
-        return part_objects.part_above(context.active_object) is not None
 
     def draw_part(self, _context, part):
         layout, settings = self.layout, part.sardf_part
@@ -180,15 +180,10 @@ class SARDF_PT_features(_Panel, bpy.types.Panel):
             column.prop(feature, "influence")
 
 
-class SARDF_PT_sections(_Panel, bpy.types.Panel):
+class SARDF_PT_sections(_ListPanel, bpy.types.Panel):
     bl_idname = "SARDF_PT_sections"
     bl_label = "Sections"
-    bl_parent_id = "SARDF_PT_part"
     bl_options: ClassVar[set] = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context):
-        return part_objects.part_above(context.active_object) is not None
 
     def draw_part(self, _context, part):
         settings = part.sardf_part

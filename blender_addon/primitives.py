@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from mathutils import Vector
 
-from .transforms import number, numbers, placed, quaternion_of, take_apart
+from .transforms import number, numbers, placed, quaternion_of, take_apart, turned_and_moved
 
 
 @dataclass(frozen=True)
@@ -144,11 +144,7 @@ def _cylinder(kind, place, values):
     axes = list(place.axes)
     if place.handed < 0:
         axes[0] = -axes[0]
-    turn = quaternion_of(axes)
-    if turn:
-        flat = {"rotate": {"field": flat, "quaternion": turn}}
-    by = numbers(place.origin)
-    return {"translate": {"field": flat, "by": by}} if any(by) else flat
+    return turned_and_moved(flat, axes, place.origin)
 
 
 def _cone(kind, place, values):

@@ -95,10 +95,15 @@ def placed(field, matrix):
         axes[0] = -axes[0]
     if abs(place.factor - 1) > EVEN:
         field = {"scale": {"field": field, "factor": number(place.factor)}}
+    return turned_and_moved(field, axes, place.origin)
+
+
+def turned_and_moved(field, axes, origin):
+    """A field with its x, y and z along the axes and its origin there."""
     turn = quaternion_of(axes)
     if turn:
         field = {"rotate": {"field": field, "quaternion": turn}}
-    by = numbers(place.origin)
+    by = numbers(origin)
     return {"translate": {"field": field, "by": by}} if any(by) else field
 
 

@@ -7,7 +7,6 @@
 #include <unordered_map>
 #include <utility>
 
-#include "povray_gen/band_bound.hpp"
 #include "povray_gen/expression_of.hpp"
 #include "sardf/shorten.hpp"
 
@@ -235,7 +234,7 @@ bool cut_off(Piece& piece, const Evaluator& field, double steps, double whole_gr
   const double band = band_share * piece.box.diagonal();
   const int boxes = int(std::clamp(band_steps / steps, 50.0, 10'000.0));
   const double known = std::min(piece.gradient, whole_gradient);
-  const std::optional<double> bound = band_bound(field, piece.box, band, boxes);
+  const std::optional<double> bound = band_lipschitz_bound(field, piece.box, band, boxes);
   if (!bound) return false;
   if (*bound * steeper_off_surface < known) {
     piece.gradient = *bound;

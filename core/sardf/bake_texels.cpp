@@ -74,11 +74,6 @@ double longest_edge(const Mesh& mesh, uint32_t face) {
   return longest;
 }
 
-Vec3 unit_or_zero(const Vec3& a) {
-  const double length = norm(a);
-  return length > 0 ? (1 / length) * a : Vec3{};
-}
-
 /// A number for each texel of a tile, by rows.
 using Numbers = std::array<uint32_t, tile_texels>;
 constexpr uint32_t nothing = UINT32_MAX;

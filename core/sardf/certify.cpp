@@ -46,22 +46,6 @@ Deviation deviation_of(const Node& node, std::span<const Deviation> in) {
   return out;
 }
 
-/// A part of the box with its bound, ordered by the bound.
-struct Part {
-  BoundingBox box;
-  double length;
-  bool operator<(const Part& other) const { return length < other.length; }
-};
-
-// 0 where there is no gradient, or it is not known.
-double steepest_at(const Evaluator& evaluator, const Vec3& point) {
-  if (!evaluator.has_gradients()) return 0;
-  Vec3 gradient;
-  evaluator.gradients(point.data(), 1, nullptr, gradient.data());
-  const double length = norm(gradient);
-  return std::isnan(length) ? 0 : length;
-}
-
 bool is_finite(const BoundingBox& box) {
   const double sum = norm(box.lo) + norm(box.hi);
   return sum < infinity;
@@ -74,6 +58,61 @@ std::array<BoundingBox, 2> halves(const BoundingBox& box) {
   parts[0].hi[axis] = parts[1].lo[axis] = box.center()[axis];
   return parts;
 }
+
+/// The parts of a box in which values may lie within a band around 0, the one with the largest
+/// bound first; what is proven to lie outside is left out.
+class BoundedParts {
+ public:
+  BoundedParts(const Evaluator& evaluator, const BoundingBox& box, double band)
+      : evaluator_(evaluator), band_(band), has_gradients_(evaluator.has_gradients()) {
+    add(box, infinity);
+  }
+
+  struct Part {
+    BoundingBox box;
+    double length;
+    bool operator<(const Part& other) const { return length < other.length; }
+  };
+  bool empty() const { return parts_.empty(); }
+  const Part& worst() const { return parts_.top(); }
+
+  /// Halves the worst part, until there are so many parts, or its bound lies close to a gradient
+  /// that is attained, or its diagonal is below the smallest.
+  void split(int most, double smallest) {
+    constexpr double close_enough = 1.001;
+    for (int used = 1; used < most && !parts_.empty(); ++used) {
+      const Part part = worst();
+      if (part.length <= close_enough * attained_ || part.box.diagonal() < smallest) return;
+      parts_.pop();
+      for (const BoundingBox& half : halves(part.box)) add(half, part.length);
+    }
+  }
+
+ private:
+  // A part is never worse than the whole.
+  void add(const BoundingBox& box, double whole) {
+    const Slope slope = evaluator_.slope(box);
+    if (slope.value.lo > band_ || slope.value.hi < -band_) return;
+    parts_.push({box, min(whole, slope.length)});
+    if (is_finite(box)) attained_ = max(attained_, steepness_at(box.center()));
+  }
+
+  // 0 where the value is not in the band, there is no gradient, or it is not known.
+  double steepness_at(const Vec3& point) const {
+    if (!has_gradients_) return 0;
+    double value;
+    Vec3 gradient;
+    evaluator_.gradients(point.data(), 1, &value, gradient.data());
+    const double length = norm(gradient);
+    return std::isnan(length) || std::abs(value) > band_ ? 0 : length;
+  }
+
+  const Evaluator& evaluator_;
+  double band_;
+  bool has_gradients_;
+  double attained_ = 0;
+  std::priority_queue<Part> parts_;
+};
 
 // The operation whose bound is infinite although its inputs' bounds are finite.
 std::string infinite_node(const Evaluator& evaluator, const BoundingBox& box) {
@@ -118,25 +157,19 @@ CertifiedBound certified_error(const Expression& expression) {
 double error_bound(const Expression& expression) { return certified_error(expression).value; }
 
 CertifiedBound certified_lipschitz(const Evaluator& evaluator, const BoundingBox& box, int boxes) {
-  constexpr double close_enough = 1.001;
-  std::priority_queue<Part> parts;
-  parts.push({box, evaluator.slope(box).length});
-  if (is_finite(box)) {
-    double attained = steepest_at(evaluator, box.center());
-    for (int used = 1; used < boxes; ++used) {
-      const Part worst = parts.top();
-      if (worst.length <= close_enough * attained) break;
-      parts.pop();
-      for (const BoundingBox& half : halves(worst.box)) {
-        // A part is never worse than the whole.
-        parts.push({half, min(worst.length, evaluator.slope(half).length)});
-        attained = max(attained, steepest_at(evaluator, half.center()));
-      }
-    }
-  }
-  const Part worst = parts.top();
-  if (worst.length < infinity) return {worst.length, ""};
-  return {infinity, infinite_node(evaluator, worst.box)};
+  BoundedParts parts(evaluator, box, infinity);
+  if (is_finite(box)) parts.split(boxes, 0);
+  const double length = parts.worst().length;
+  if (length < infinity) return {length, ""};
+  return {infinity, infinite_node(evaluator, parts.worst().box)};
+}
+
+std::optional<double> band_lipschitz_bound(const Evaluator& evaluator, const BoundingBox& box,
+                                           double band, int boxes) {
+  BoundedParts parts(evaluator, box, band);
+  parts.split(boxes, box.diagonal() / 100);
+  if (parts.empty()) return {};
+  return parts.worst().length;
 }
 
 double lipschitz_bound(const Evaluator& evaluator, const BoundingBox& box, int boxes) {

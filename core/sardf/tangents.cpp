@@ -14,10 +14,6 @@ namespace {
 constexpr size_t vertices_at_once = size_t(1) << 16;  // between two reports
 
 Vec3 rounded(const Vec3& a) { return {float(a[0]), float(a[1]), float(a[2])}; }
-Vec3 unit_or_zero(const Vec3& a) {
-  const double length = norm(a);
-  return length > 0 ? (1 / length) * a : Vec3{};
-}
 Vec3 in_plane(const Vec3& a, const Vec3& normal) {
   return unit_or_zero(a - dot(normal, a) * normal);
 }

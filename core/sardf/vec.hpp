@@ -22,5 +22,9 @@ inline Vec3 cross(const Vec3& a, const Vec3& b) {
 }
 inline double norm(const Vec3& a) { return std::hypot(a[0], a[1], a[2]); }
 inline Vec3 normalized(const Vec3& a) { return (1 / norm(a)) * a; }
+inline Vec3 unit_or_zero(const Vec3& a) {
+  const double length = norm(a);
+  return length > 0 ? (1 / length) * a : Vec3{};
+}
 
 }  // namespace sardf

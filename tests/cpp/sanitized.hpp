@@ -12,6 +12,6 @@ inline constexpr bool is_sanitized = false;
 #endif
 
 /// Seconds within which long work stops when it is cancelled.
-inline constexpr double at_once = is_sanitized ? 0.5 : 0.1;
+inline constexpr double at_once = is_sanitized ? 1 : 0.1;
 
 }  // namespace sardf

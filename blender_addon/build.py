@@ -99,8 +99,8 @@ def build(wheels, output):
     found = {wheel: check_wheel(wheel, version) for wheel in wheels}
     platforms = {platform for _, platform in found.values()}
     own = {
-        file.name: file.read_bytes()
-        for file in sorted([*HERE.glob("*.py"), HERE / "LICENSE"])
+        file.relative_to(HERE).as_posix(): file.read_bytes()
+        for file in sorted([*HERE.rglob("*.py"), HERE / "LICENSE"])
         if file.name not in LEFT_OUT
     }
     extension = own | {f"wheels/{wheel.name}": wheel.read_bytes() for wheel in wheels}

@@ -53,7 +53,7 @@ def load_core():
 
 def make_part(options, signals):
     """The arrays of the scene or part, and its camera."""
-    job, camera, sardf = addon("job"), addon("camera"), load_core()
+    job, camera, sardf = addon("baked.job"), addon("picture.camera"), load_core()
     path, scene = addon("sources").find(options)
     whole = options.command == "bake" or options.keep_blend or "shaded" in options.look
     wanted = job.CHANNELS if whole else ("base_color",)
@@ -87,7 +87,8 @@ def build_scene(part, view, options):
     """An empty Blender session with the part, its camera, lights and units in it."""
     import bpy
 
-    assemble, camera, studio, render = map(addon, ("assemble", "camera", "studio", "render"))
+    assemble = addon("baked.assemble")
+    camera, studio, render = (addon(f"picture.{name}") for name in ("camera", "studio", "render"))
     start_empty()
     scene = bpy.context.scene
     assemble.set_units(scene, part.scene)
@@ -102,7 +103,7 @@ def build_scene(part, view, options):
 
 
 def render_looks(scene, item, images, options, workplace, signals):
-    material, render = addon("material"), addon("render")
+    material, render = addon("baked.material"), addon("picture.render")
     own = item.material_slots[0].material
     for look in options.look:
         if look == "shaded":
@@ -129,8 +130,8 @@ def keep_blend(images, workplace):
     folder.mkdir()
     for channel, image in images.items():
         path = folder / f"{channel}.exr"
-        addon("images").write_exr(image, path, channel)
-        addon("images").pack(image, path)
+        addon("baked.images").write_exr(image, path, channel)
+        addon("baked.images").pack(image, path)
     for made in [m for m in bpy.data.materials if m.users == 0]:
         bpy.data.materials.remove(made)
     path = workplace / "part.blend"
@@ -141,7 +142,7 @@ def keep_blend(images, workplace):
 
 def run(options):
     """Make everything and return the written files."""
-    addon("render")  # imports bpy, which sets signal handlers of its own
+    addon("picture.render")  # imports bpy, which sets signal handlers of its own
     signals = outputs.Signals()
     started = time.perf_counter()
     workplace = outputs.make_workplace(options.output)
@@ -175,13 +176,13 @@ def export(options):
         if is_part and options.format == "json":
             depsgraph = bpy.context.evaluated_depsgraph_get
             part = sources.part_of(options)  # opens the file, so it comes first
-            for warning in addon("part_export").write(part, output, depsgraph()):
+            for warning in addon("parts.part_export").write(part, output, depsgraph()):
                 print(f"sardf: {warning}")
             return [output]
         path, scene = sources.find(options)
         made = sardf.load(path) if scene is None else sardf.Scene.from_json(json.dumps(scene))
         (made.save if options.format == "json" else made.povray)(str(output))
-    except (sardf.Error, addon("part_error").PartError) as error:
+    except (sardf.Error, addon("parts.part_error").PartError) as error:
         raise Stop(WRONG_INPUT, str(error)) from error
     except OSError as error:
         raise Stop(FAILED, f"{output}: cannot be written: {error}") from error

@@ -7,19 +7,11 @@ from typing import ClassVar
 import bpy
 from bpy_extras.io_utils import ImportHelper
 
-from . import (
-    assemble,
-    camera,
-    core,
-    images,
-    job,
-    part_bake,
-    part_objects,
-    properties,
-    render,
-    studio,
-)
-from .part_error import PartError
+from . import core, properties
+from .baked import assemble, images, job
+from .parts import part_bake, part_objects
+from .parts.part_error import PartError
+from .picture import camera, render, studio
 
 POLL_SECONDS = 0.05
 

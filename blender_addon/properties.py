@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import bpy
 
-from . import core, job
+from . import core
+from .baked import job
 
 SIZES = ("256", "512", "1024", "2048", "4096", "8192")
 

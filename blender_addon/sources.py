@@ -13,7 +13,7 @@ def find(options):
     if options.scene and not options.scene.lower().endswith(".blend"):
         return options.scene, None
     part = part_of(options)
-    part_scene, error = _module("part_scene"), _module("part_error").PartError
+    part_scene, error = _module("parts.part_scene"), _module("parts.part_error").PartError
     try:
         scene, warnings = part_scene.scene_of(part, _depsgraph())
     except error as problem:

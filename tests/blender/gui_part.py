@@ -23,7 +23,7 @@ result["drawn"] = {}
 
 
 def watch_panels():
-    panel = importlib.import_module("sardf_blender.part_panel")
+    panel = importlib.import_module("sardf_blender.parts.part_panel")
     panel._Panel.bl_category = "Item"
     for cls in panel.CLASSES:
         watch(cls, "draw_item" if issubclass(cls, bpy.types.UIList) else "draw")

@@ -55,7 +55,7 @@ def note_draws(preview):
 
 def redrawn():
     """Wait until the view was drawn again, with everything that is in it now, and shown."""
-    from sardf_blender import preview
+    from sardf_blender.preview import preview
 
     for _ in range(2):
         yield
@@ -68,7 +68,7 @@ def redrawn():
 
 def settled():
     """Wait until everything is sampled finely and drawn."""
-    from sardf_blender import preview
+    from sardf_blender.preview import preview
 
     preview.collect()
     yield from until(lambda: not preview.CURRENT.busy, "the fine samples")
@@ -79,7 +79,7 @@ def scenario():
     bpy.ops.preferences.addon_enable(module="sardf_blender")
     bpy.context.preferences.view.smooth_view = 0  # milliseconds of a flight to a new view
     bpy.context.preferences.system.viewport_aa = "OFF"  # else a view is drawn many times
-    from sardf_blender import preview
+    from sardf_blender.preview import preview
 
     note_draws(preview)
     yield from shown()
@@ -176,7 +176,7 @@ def hidden(preview):
 
 
 def probed():
-    from sardf_blender.preview_probe import SARDF_OT_probe
+    from sardf_blender.preview.preview_probe import SARDF_OT_probe
 
     window, area, regions = view()
     with bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"]):
@@ -198,7 +198,7 @@ def probed():
 
 def replaced(preview):
     """Where the graphics card refuses, a mesh stands in; once it works again, none does."""
-    from sardf_blender import preview_draw, preview_stand_in
+    from sardf_blender.preview import preview_draw, preview_stand_in
 
     def refuse(_self):
         raise RuntimeError("no shader today")

@@ -6,7 +6,7 @@ import time
 from pathlib import Path
 
 import bpy
-from sardf_blender import part_objects, part_properties, part_scene, part_status
+from sardf_blender.parts import part_objects, part_properties, part_scene, part_status
 
 CASES = {}
 

@@ -6,7 +6,7 @@ import time
 from pathlib import Path
 
 import bpy
-from sardf_blender import part_objects, part_scene
+from sardf_blender.parts import part_objects, part_scene
 
 
 def main(folder, *paths):

@@ -3,7 +3,7 @@
 
 import bpy
 from mathutils import Euler, Matrix
-from sardf_blender import part_bake, part_objects, part_scene
+from sardf_blender.parts import part_bake, part_objects, part_scene
 
 TURN = Matrix.Translation((1, -2, 0.5)) @ Euler((0.4, 0.2, -0.9)).to_matrix().to_4x4()
 CURVES = ("poly", "ring", "nurbs", "closed", "weighted", "free", "bezier", "loop")

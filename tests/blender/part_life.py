@@ -4,7 +4,7 @@
 from pathlib import Path
 
 import bpy
-from sardf_blender import part_bake, part_lists, part_objects, part_scene
+from sardf_blender.parts import part_bake, part_lists, part_objects, part_scene
 
 
 def scene(part=None):

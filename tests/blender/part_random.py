@@ -5,7 +5,7 @@ import random
 from pathlib import Path
 
 import bpy
-from sardf_blender import part_objects, part_presets, part_scene, primitives
+from sardf_blender.parts import part_objects, part_presets, part_scene, primitives
 
 KINDS = ("objects", "meshes", "curves", "materials", "images", "collections", "actions")
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import bpy
 from mathutils import Euler, Matrix
-from sardf_blender import mesh_files, part_objects, part_scene, primitives
+from sardf_blender.parts import mesh_files, part_objects, part_scene, primitives
 
 SCALES = {
     "unit": (1, 1, 1),

@@ -3,7 +3,8 @@
 
 import bpy
 import numpy as np
-from sardf_blender import part_objects, preview
+from sardf_blender.parts import part_objects
+from sardf_blender.preview import preview
 
 
 def shown():

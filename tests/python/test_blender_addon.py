@@ -119,7 +119,7 @@ def slow_core(entered):
 def test_job_stops_when_cancelled_and_keeps_errors():
     sys.path.insert(0, str(ROOT))
     try:
-        from blender_addon import job
+        from blender_addon.baked import job
     finally:
         sys.path.remove(str(ROOT))
     entered = threading.Event()

@@ -164,7 +164,7 @@ def test_wrong_tangents_have_exit_code_2(tmp_path):
 @pytest.fixture
 def job(monkeypatch):
     monkeypatch.syspath_prepend(str(ROOT))
-    from blender_addon import job
+    from blender_addon.baked import job
 
     return job
 

@@ -151,7 +151,8 @@ sys.path.insert(0, {str(ROOT)!r})
 import blender_addon
 import bpy
 blender_addon.register()
-from blender_addon import core, part_import
+from blender_addon import core
+from blender_addon.parts import part_import
 bpy.ops.wm.read_homefile(use_empty=True)
 part_import.import_scene(core.load(), {str(write_scene(tmp_path, GRADED_SPHERE))!r}, bpy.context)
 bpy.ops.wm.save_as_mainfile(filepath={str(made)!r})

@@ -161,7 +161,8 @@ def test_extension_holds_wheels_and_the_older_addon_their_content(zips, wheel, u
     for listed in (names, older):
         assert {name.split("/")[0] for name in listed} == {"sardf_blender"}
         assert not [n for n in listed if "__pycache__" in n or n.endswith(("/build.py", ".tmp"))]
-    own = {f"sardf_blender/{path.name}" for path in (ROOT / "blender_addon").glob("*.py")}
+    modules = ROOT / "blender_addon"
+    own = {f"sardf_blender/{path.relative_to(modules)}" for path in modules.rglob("*.py")}
     own.remove("sardf_blender/build.py")
     assert own <= set(names)
     assert own <= set(older)

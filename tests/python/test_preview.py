@@ -13,7 +13,7 @@ from repository import ROOT
 
 sys.path.insert(0, str(ROOT))
 try:
-    from blender_addon import preview_reading, preview_sampler, preview_volume
+    from blender_addon.preview import preview_reading, preview_sampler, preview_volume
 finally:
     sys.path.remove(str(ROOT))
 Wish, Sampler = preview_volume.Wish, preview_sampler.Sampler

@@ -14,15 +14,9 @@ from pathlib import Path
 import bpy
 from mathutils import Matrix
 
-from . import (
-    assemble,
-    core,
-    preview_draw,
-    preview_legend,
-    preview_sampler,
-    preview_stand_in,
-    preview_volume,
-)
+from .. import core
+from ..baked import assemble
+from . import preview_draw, preview_legend, preview_sampler, preview_stand_in, preview_volume
 
 SOON = 0.01  # seconds from a change to the question what there is now; changes in between are one
 TICK = 0.02  # seconds between two looks at the worker thread

@@ -6,7 +6,7 @@ import math
 import bpy
 from mathutils import Matrix, Vector
 
-from . import material
+from ..baked import material
 
 COLLECTION = "sardf studio"
 WORLD = "sardf studio"

@@ -13,7 +13,9 @@ import uuid
 import bpy
 from mathutils import Matrix
 
-from . import assemble, core, job, part_scene
+from .. import core
+from ..baked import assemble, job
+from . import part_scene
 from .part_error import PartError
 
 KEEPS = "sardf image of "  # custom properties of a baked object, each with a channel's image

@@ -4,7 +4,7 @@
 import functools
 import json
 
-from . import core
+from .. import core
 
 # Blender stores the number of a choice, so a number once given to a word stays its own.
 BLEND_NUMBERS = {"min_max": 0, "sardf": 1, "sardf_c1": 2, "r_function": 3, "smooth": 4}

@@ -6,8 +6,8 @@ from typing import ClassVar
 import bpy
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
+from .. import core
 from . import (
-    core,
     part_export,
     part_import,
     part_objects,

@@ -3,7 +3,8 @@
 
 import json
 
-from . import part_objects, part_scene, part_status, preview
+from ..preview import preview
+from . import part_objects, part_scene, part_status
 from .part_error import PartError
 
 

@@ -15,7 +15,8 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import gui_window
-from gui_window import TimeOut, drive, result, screenshot, view
+from gui_window import TimeOut, addon, drive, result, screenshot, view
+from installing import MODULE
 
 SCENE = sys.argv[-3]
 TICK = 0.05  # seconds between two looks at Blender's state
@@ -41,8 +42,7 @@ def contents():
 
 
 def count_panel_draws():
-    from sardf_blender import panel
-
+    panel = addon("panel")
     original = panel.SARDF_PT_main.draw
 
     def draw(self, context):
@@ -53,9 +53,7 @@ def count_panel_draws():
 
 
 def bake_class():
-    from sardf_blender import operators
-
-    return operators.SARDF_OT_bake
+    return addon("operators").SARDF_OT_bake
 
 
 def redrawn():
@@ -108,7 +106,7 @@ def press_bake():
 
 
 def scenario():
-    bpy.ops.preferences.addon_enable(module="sardf_blender")
+    bpy.ops.preferences.addon_enable(module=MODULE)
     bpy.context.preferences.view.show_splash = False
     bpy.context.preferences.view.smooth_view = 0  # milliseconds of a flight to a new view
     count_panel_draws()

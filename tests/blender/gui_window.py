@@ -5,6 +5,7 @@ two arguments are a folder for screenshots and RESULT.json.
 A script is a generator: each yield gives Blender time, and it waits for what it expects by `until`.
 """
 
+import importlib
 import json
 import os
 import subprocess
@@ -15,12 +16,20 @@ from pathlib import Path
 
 import bpy
 
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from installing import MODULE
+
 FOLDER, RESULT = sys.argv[-2:]
 result = {"errors": []}
 
 
 class TimeOut(Exception):
     pass
+
+
+def addon(name):
+    """A module of the installed add-on."""
+    return importlib.import_module(f"{MODULE}.{name}")
 
 
 def until(condition, what, limit):

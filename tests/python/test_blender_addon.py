@@ -5,7 +5,6 @@ import subprocess
 import sys
 import threading
 import time
-import zipfile
 from types import SimpleNamespace
 
 import numpy as np
@@ -16,6 +15,7 @@ from blender_runs import (
     SCRIPTS,
     VERSIONS,
     expected_colors,
+    install_for_window,
     run_in_window,
     run_script,
     write_scene,
@@ -52,11 +52,10 @@ def test_installed_zip_bakes_rebakes_and_renders(version, zips, tmp_path):
 
 @pytest.fixture(scope="module")
 def window(zips, tmp_path_factory):
-    """The installed add-on driven in a window of Blender 3.4.1; what gui_bake.py found."""
+    """The installed add-on driven in a window; what gui_bake.py found."""
     folder = tmp_path_factory.mktemp("window")
     user = folder / "user"
-    with zipfile.ZipFile(zips["3.4.1"]) as archive:
-        archive.extractall(user / "scripts/addons")
+    install_for_window(zips, user)
     scene = write_scene(folder, GRADED_SPHERE)
     script = SCRIPTS / "gui_bake.py"
     return run_in_window(script, scene, user_folder=user, size=(1280, 800), limit=400)[0]

@@ -155,6 +155,15 @@ def remove_part(part):
             bpy.data.batch_remove([each])
 
 
+def activate(context, item):
+    """Select an object alone and make it the active one."""
+    for other in context.selected_objects:
+        other.select_set(False)
+    if item.name in context.view_layer.objects:
+        item.select_set(True)
+        context.view_layer.objects.active = item
+
+
 def middle(items):
     """The mean of some objects' places."""
     if not items:

@@ -31,6 +31,7 @@ MODULES = (  # in the order in which Blender must know them
     "properties",
     "parts.part_properties",
     "parts.part_objects",
+    "parts.part_wireframes",
     "parts.part_now",
     "parts.part_status",
     "operators",

@@ -9,7 +9,7 @@ baked        a scene file's or a part's scene -> object with textures and fracti
 picture      camera, lights and render settings
 headless commands    runs without a window: as a script, and as `blender -c sardf`
 arguments sources outputs    their options, what they read, and how files get their names
-properties operators panel    the user interface for scene files, and the bake
+properties operators piece_operator panel    the user interface for scene files, and the bake
 parts        parts modelled from Blender objects
 preview      parts shown in the viewport while they are made
 """
@@ -31,12 +31,17 @@ MODULES = (  # in the order in which Blender must know them
     "properties",
     "parts.part_properties",
     "parts.part_objects",
+    "parts.part_wireframes",
+    "parts.part_now",
     "parts.part_status",
     "operators",
+    "piece_operator",
     "parts.part_lists",
     "parts.part_operators",
+    "parts.part_section_objects",
     "panel",
     "parts.part_panel",
+    "parts.part_section_panel",
     "commands",
     "preview.preview_settings",
     "preview.preview_panel",

@@ -67,9 +67,25 @@ def parse(arguments, command="render", program="headless.py"):
     if command == "export":
         return _checked_export(parser.parse_args(arguments))
     _add_bake(parser)
+    parser.set_defaults(frames=None, pieces=False)
     if command == "render":
         _add_render(parser)
-    return parser.parse_args(arguments)
+    return _checked_frames(parser.parse_args(arguments))
+
+
+def _checked_frames(options):
+    if not options.frames:
+        if options.pieces:
+            raise Stop(WRONG_INPUT, "--pieces is for --frames")
+        return options
+    first, last = options.frames
+    if first > last:
+        raise Stop(WRONG_INPUT, f"--frames {first} {last}: the first comes after the last")
+    if options.scene and not options.scene.lower().endswith(".blend"):
+        raise Stop(WRONG_INPUT, f"{options.scene}: --frames is for parts in .blend files")
+    if options.pieces and not options.section:
+        raise Stop(WRONG_INPUT, "--pieces needs the sections that --no-section leaves out")
+    return options
 
 
 def _checked_export(options):
@@ -101,5 +117,17 @@ def _add_render(parser):
                         help="samples of each pixel of the shaded look (%(default)s)")  # fmt: skip
     parser.add_argument("--look", type=looks, default=["shaded"], metavar="LOOK[,LOOK]",
                         help="shaded, flat, normals (shaded)")  # fmt: skip
+    parser.add_argument(
+        "--frames",
+        nargs=2,
+        type=whole(-1048574, 1048574),
+        metavar=("FIRST", "LAST"),
+        help="of a .blend: bake and render the part in each of these frames",
+    )
+    parser.add_argument(
+        "--pieces",
+        action="store_true",
+        help="with --frames: both sides of all sections, moved by their Spread",
+    )
     parser.add_argument("--keep-blend", action=argparse.BooleanOptionalAction, default=True,
                         help="write part.blend and textures")  # fmt: skip

@@ -6,8 +6,11 @@
 
 Writes into the folder OUT: the picture of each look (part.png, flat.exr, normals.exr), camera.json
 with the camera used, and, unless --no-keep-blend, part.blend with its images inside and the baked
-channels as textures/*.exr. Exit code: 0 everything was written, 1 it was not, 2 wrong input or
-usage; then one line on standard error says why. The commands of commands.py run here as well.
+channels as textures/*.exr. With --frames FIRST LAST the part of a .blend is baked and rendered in
+each frame, into part_0001.png and so on, each of which has its name as soon as it is complete.
+
+Exit code: 0 everything was written, 1 it was not, 2 wrong input or usage; then one line on standard
+error says why. The commands of commands.py run here as well.
 """
 
 import importlib.util
@@ -65,22 +68,11 @@ def make_part(options, signals):
         given = camera.read(options.camera) if options.camera else None
         part = job.make_part(sardf, request, progress=lambda share: not signals.name)
         return part, given or part.scene.camera(width=options.width, height=options.height)
-    except (sardf.Error, camera.CameraError) as error:
+    except (sardf.Error, camera.CameraError, job.NothingLeft) as error:
         raise Stop(WRONG_INPUT, str(error)) from error
     except sardf.Cancelled:
         signals.check()
         raise
-
-
-def start_empty():
-    """An empty Blender session. A command belongs to an enabled add-on, so it keeps the
-    preferences; a script starts from factory settings."""
-    import bpy  # not at the top: without it, main() says what is missing
-
-    if __package__:
-        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    else:
-        bpy.ops.wm.read_factory_settings(use_empty=True)
 
 
 def build_scene(part, view, options):
@@ -89,7 +81,7 @@ def build_scene(part, view, options):
 
     assemble = addon("baked.assemble")
     camera, studio, render = (addon(f"picture.{name}") for name in ("camera", "studio", "render"))
-    start_empty()
+    addon("sources").start_empty(options.as_command)
     scene = bpy.context.scene
     assemble.set_units(scene, part.scene)
     images = assemble.build_images(part)
@@ -100,26 +92,6 @@ def build_scene(part, view, options):
     render.set_common(scene)
     render.set_size(scene, options.width, options.height)
     return scene, item, images
-
-
-def render_looks(scene, item, images, options, workplace, signals):
-    material, render = addon("baked.material"), addon("picture.render")
-    own = item.material_slots[0].material
-    for look in options.look:
-        if look == "shaded":
-            render.set_shaded(scene, options.samples)
-            item.material_slots[0].material = own
-        else:
-            render.set_exact(scene)
-            item.material_slots[0].material = (
-                material.build_flat(images["base_color"])
-                if look == "flat"
-                else material.build_normals()
-            )
-        render.to_file(scene, workplace / render.LOOKS[look])
-        signals.check()
-    item.material_slots[0].material = own
-    render.set_shaded(scene, options.samples)
 
 
 def keep_blend(images, workplace):
@@ -147,13 +119,19 @@ def run(options):
     started = time.perf_counter()
     workplace = outputs.make_workplace(options.output)
     try:
+        if options.frames:
+            return addon("frames").run(load_core(), options, signals, workplace)
         part, view = make_part(options, signals)
         faces, vertices = len(part.mesh.faces), len(part.mesh.vertices)
         made = time.perf_counter()
         print(f"sardf: {vertices} vertices, {faces} faces, baked in {made - started:.1f} s")
         scene, item, images = build_scene(part, view, options)
         if options.command == "render":
-            render_looks(scene, item, images, options, workplace, signals)
+            names, looks = addon("picture.render").LOOKS, addon("picture.looks")
+            looks.render_all(
+                scene, [(item, images["base_color"])], options.look, options.samples,
+                lambda look: workplace / names[look], signals.check,
+            )  # fmt: skip
             print(f"sardf: rendered in {time.perf_counter() - made:.1f} s")
         if options.command == "bake" or options.keep_blend:
             keep_blend(images, workplace)
@@ -194,7 +172,7 @@ def main(words, command="render"):
     program = f"blender -c sardf {command}" if __package__ else "headless.py"
     try:
         options = arguments.parse(words, command, program)
-        options.command = command
+        options.command, options.as_command = command, bool(__package__)
         if importlib.util.find_spec("bpy") is None:
             raise Stop(FAILED, "run this in Blender, or with a Python that has the bpy module")
         for path in (export if command == "export" else run)(options):

@@ -67,6 +67,8 @@ class SARDF_OT_bake(bpy.types.Operator):
             return self._fail(error)
         try:
             part = job.make_part(sardf, request)
+        except job.NothingLeft as error:
+            return self._commit_nothing(request, error)
         except sardf.Error as error:
             return self._fail(error)
         return self._commit(context, part, dict(_packed_images(part)))
@@ -93,7 +95,7 @@ class SARDF_OT_bake(bpy.types.Operator):
             request = self._request(context)
         except (core.MissingCore, PartError) as error:
             return self._fail(error)
-        SARDF_OT_bake.job = job.Job(sardf, request)
+        SARDF_OT_bake.job, self._wanted = job.Job(sardf, request), request
         self._images, self._steps = {}, None
         manager = context.window_manager
         self._timer = manager.event_timer_add(POLL_SECONDS, window=context.window)
@@ -114,6 +116,8 @@ class SARDF_OT_bake(bpy.types.Operator):
             return {"PASS_THROUGH"}
         if running.error is not None:
             self._clean_up(context)
+            if isinstance(running.error, job.NothingLeft):
+                return self._commit_nothing(self._wanted, running.error)
             if not isinstance(running.error, core.load().Error):
                 traceback.print_exception(running.error)  # ours to mend: show where
             return self._fail(running.error)
@@ -154,6 +158,16 @@ class SARDF_OT_bake(bpy.types.Operator):
         item.select_set(True)
         context.view_layer.objects.active = item
         self.report({"INFO"}, f"Baked {part.name}: {len(part.mesh.faces)} faces")
+        return {"FINISHED"}
+
+    def _commit_nothing(self, request, error):
+        """The baked object of before is emptied; a message says so, and no dialog."""
+        if self._part is not None:
+            try:
+                part_bake.place_nothing(part_bake.find(self._part), request.scene)
+            except PartError as problem:
+                return self._fail(problem)
+        self.report({"WARNING"}, str(error))
         return {"FINISHED"}
 
     def _show(self, context):

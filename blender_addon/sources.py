@@ -47,6 +47,17 @@ def part_of(options):
     return whole[0]
 
 
+def start_empty(as_command):
+    """An empty Blender session. A command belongs to an enabled add-on, so it keeps the
+    preferences; a script starts from factory settings."""
+    import bpy
+
+    if as_command:
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    else:
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+
+
 def register():
     """Let Blender know the properties of parts, unless an enabled add-on did already."""
     import bpy

@@ -10,6 +10,7 @@ from typing import Any
 CHANNELS = ("base_color", "roughness", "metallic", "emission", "fractions")
 NORMAL_MAP = "normal"  # a channel more: the solid's normals in the mesh's tangent space
 GRAIN = "grain_direction"  # the attribute that directs metal's reflections unless one is named
+CHECKED = 64  # cells along each side where it is looked for what sections leave
 MESH_SHARE = 0.4  # of the time, for the progress bar: meshing took 0.2 to 0.6 of it on our scenes
 
 
@@ -46,13 +47,28 @@ class Part:
     fractions: Any
     attributes: dict
     tangent: str
+    whole: bool = False  # the scene's sections were not cut
+    given: dict | None = None  # the Request's scene
+
+
+class NothingLeft(Exception):
+    """The scene's sections remove all of it, said in one sentence."""
+
+
+def leaves_nothing(scene):
+    """Whether a scene's sections leave nothing of it, or nothing as thick as a CHECKED-th of it."""
+    if not scene.section_count:
+        return False
+    lo, hi = scene.bounds
+    samples = scene.sample_volume(lo, hi, (CHECKED, CHECKED, CHECKED), colors="none")
+    return bool(samples["field"].max() < 0)
 
 
 def make_part(sardf, request, progress=None):
     """Mesh, bake and evaluate the scene of `request`.
 
     `progress(share)` is called with the share done in [0, 1] and returns False to cancel; then
-    sardf.Cancelled is raised. Raises sardf.Error for what is wrong in the scene.
+    sardf.Cancelled is raised. Raises sardf.Error for what is wrong in the scene, and NothingLeft.
     """
 
     def between(start, stop):
@@ -65,12 +81,18 @@ def make_part(sardf, request, progress=None):
     else:
         scene = sardf.Scene.from_json(json.dumps(request.scene), {}, between(0.0, 0.0))
     tangent = tangent_of(scene, request.tangent)
-    mesh = scene.mesh(
-        resolution=request.resolution,
-        sections=request.sections,
-        size=request.size,
-        progress=between(0.0, MESH_SHARE),
-    )
+    name = scene.title or Path(request.path).stem
+    try:
+        mesh = scene.mesh(
+            resolution=request.resolution,
+            sections=request.sections,
+            size=request.size,
+            progress=between(0.0, MESH_SHARE),
+        )
+    except sardf.Error:
+        if request.sections and leaves_nothing(scene):
+            raise NothingLeft(f"the sections leave nothing of '{name}'") from None
+        raise
     maps = scene.bake(
         mesh,
         size=request.size,
@@ -78,11 +100,19 @@ def make_part(sardf, request, progress=None):
         sections=request.sections,
         progress=between(MESH_SHARE, 1.0),
     )
-    name = scene.title or Path(request.path).stem
     vertices = mesh.vertices
     attributes = attributes_at(scene, vertices)
     return Part(
-        name, str(request.path), scene, mesh, maps, scene.fractions(vertices), attributes, tangent
+        name=name,
+        source=str(request.path),
+        scene=scene,
+        mesh=mesh,
+        maps=maps,
+        fractions=scene.fractions(vertices),
+        attributes=attributes,
+        tangent=tangent,
+        whole=not request.sections,
+        given=request.scene,
     )
 
 

@@ -15,9 +15,10 @@ from mathutils import Matrix
 
 from .. import core
 from ..baked import assemble, job
-from . import part_scene
+from . import part_now, part_scene
 from .part_error import PartError
 
+MARK = "sardf_mark"  # custom property of a baked object: part_now.mark_of the scene that it shows
 KEEPS = "sardf image of "  # custom properties of a baked object, each with a channel's image
 
 
@@ -65,12 +66,51 @@ def place(scene, part, made, built):
         item.matrix_parent_inverse = Matrix.Identity(4)
     if part.library is None:
         part.sardf_part.baked = item
+    item[MARK] = "" if made.given is None else _mark(made.given, made.whole)
     return item
+
+
+def _mark(scene, whole):
+    """`whole`: the sections were not cut; then it shows a scene without any."""
+    shown = {key: of for key, of in scene.items() if not (whole and key == "sections")}
+    return part_now.mark_of(shown)
+
+
+def place_nothing(part, scene):
+    """Where the sections of a part's `scene` leave nothing: an earlier baked object is emptied. It
+    keeps its material. Returns it, or None where there is none."""
+    item = _baked(part)
+    if item is None:
+        return None
+    materials = list(item.data.materials)
+    item.data.clear_geometry()
+    for material in materials if not len(item.data.materials) else ():
+        item.data.materials.append(material)
+    item[MARK] = part_now.mark_of(scene)
+    return item
+
+
+def is_baked(part):
+    """Whether the part has a baked object."""
+    return _baked(part) is not None
+
+
+def mark_of(part):
+    """The MARK of the part's baked object, or ""."""
+    item = _baked(part)
+    return "" if item is None else item.get(MARK, "")
+
+
+def is_seen(part):
+    """Whether the part's baked object is visible."""
+    item = _baked(part)
+    return item is not None and item.visible_get()
 
 
 def rebake_frames(context, part, frames, channels=job.CHANNELS):
     """For each frame set it, bake the part as the frame's drivers and keyframes have it, and yield
-    (frame, mesh object). Raises PartError and sardf.Error."""
+    (frame, mesh object); None where sections leave nothing and it was never baked. Raises PartError
+    and sardf.Error."""
     sardf = core.load()
     scene, key = context.scene, key_of(part)
     for frame in frames:
@@ -78,8 +118,12 @@ def rebake_frames(context, part, frames, channels=job.CHANNELS):
         part = find(key)
         request, _ = request_of(part, scene.sardf, context.evaluated_depsgraph_get())
         request = dataclasses.replace(request, channels=tuple(channels))
-        made = job.make_part(sardf, request)
-        item = place(scene, part, made, assemble.build_images(made))
+        try:
+            made = job.make_part(sardf, request)
+        except job.NothingLeft:
+            item = place_nothing(part, request.scene)
+        else:
+            item = place(scene, part, made, assemble.build_images(made))
         context.view_layer.update()
         yield frame, item
 

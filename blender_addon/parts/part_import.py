@@ -5,9 +5,9 @@ import json
 from pathlib import Path
 
 import bpy
-from mathutils import Color
+from mathutils import Color, Matrix
 
-from . import part_objects, part_scene, scene_text
+from . import part_objects, part_scene, part_section_objects, scene_text
 from .import_fractions import read_fractions
 from .import_numbers import NotANumber, Numbers
 from .import_shapes import shape_of
@@ -179,18 +179,35 @@ class _Importer:
         return self.numbers.vector(value)
 
     def _section(self, section, name):
-        made = self.part.sardf_part.sections.add()
-        made.name = name
+        """Section objects for what a section removes; several where these cut together."""
         keep = section.get("keep", [])
-        shape = shape_of(section["remove"], self.numbers)
-        solid = shape is not None and shape.kind not in ("point", "poly", "nurbs")
-        if solid and all(isinstance(each, str) for each in keep):
-            made.object = _made(shape, name, self.collection)
+        shapes = [shape_of(each, self.numbers) for each in _together(section["remove"])]
+        is_solid = all(s is not None and s.kind not in ("point", "poly", "nurbs") for s in shapes)
+        if not is_solid or not all(isinstance(each, str) for each in keep):
+            made = self.part.sardf_part.sections.add()
+            made.name, made.text = name, json.dumps(section)
+            return
+        size = part_section_objects.size_of(self.part)
+        for number, shape in enumerate(shapes):
+            made = self.part.sardf_part.sections.add()
+            made.name = name if len(shapes) == 1 else f"{name} {'abcdefghijklmnop'[number % 16]}"
+            made.operation = "intersection" if number else "union"
+            made.keep = "" if number else ", ".join(keep)
+            made.object = _made(shape, made.name, self.collection)
+            part_section_objects.mark(made.object)
             made.object.parent = self.part
             made.object.matrix_basis = shape.matrix
-            made.keep = ", ".join(keep)
-        else:
-            made.text = json.dumps(section)
+            if shape.kind == "half_space":  # it has no size: this is how large it is drawn
+                made.object.matrix_basis @= Matrix.Scale(size, 4)
+
+
+def _together(removed):
+    """The operands of an intersection that entries of the list can say, or the field alone."""
+    if _boolean(removed) and "intersection" in removed:
+        given = removed["intersection"]
+        if isinstance(given, list) or given.keys() == {"of"}:
+            return given if isinstance(given, list) else given["of"]
+    return [removed]
 
 
 def _boolean(value):

@@ -34,6 +34,7 @@ def add_selected(context, part):
     known = {entry.object for entry in part.sardf_part.entries}
     chosen = [item for item in context.selected_objects if item != part and item not in known]
     chosen = [i for i in chosen if i.parent != part or i != part.sardf_part.baked]
+    chosen = [item for item in chosen if not item.sardf_section.is_section]
     if not chosen:
         raise PartError("no object is selected that is not in the part yet")
     for item in chosen:

@@ -7,6 +7,7 @@ from mathutils import Vector
 from . import part_properties, wireframes
 from .part_fields import values_of
 
+DRAWN = "sardf_drawn"  # custom property of a mesh: the primitive that its edges draw, as text
 COLORS = {"union": (0.35, 0.55, 0.9, 1), "intersection": (0.4, 0.8, 0.4, 1),
           "difference": (0.9, 0.35, 0.3, 1), "none": (0.6, 0.6, 0.6, 1)}  # fmt: skip
 
@@ -39,16 +40,29 @@ def new_primitive(kind, name, collection, matrix=None, **values):
     return item
 
 
-def draw(item):
-    """Make the object's edges those of its primitive. Linked meshes stay as they are."""
+def draw(item, settings=None):
+    """Make the object's edges those of its primitive, or of other `settings` of one. Linked meshes
+    stay as they are."""
     kind = item.sardf_primitive.kind
     mesh = item.data
     if kind == part_properties.NO_KIND or item.type != "MESH" or mesh.library is not None:
         return
-    points, edges = wireframes.outline(kind, values_of(item.sardf_primitive, kind))
+    values = values_of(settings or item.sardf_primitive, kind)
+    points, edges = wireframes.outline(kind, values)
     mesh.clear_geometry()
     mesh.from_pydata([tuple(map(float, point)) for point in points], edges, [])
     mesh.update()
+    mesh[DRAWN] = _text_of(kind, values)
+
+
+def is_drawn(item, settings):
+    """Whether the object's edges are those of its primitive with these settings."""
+    kind = item.sardf_primitive.kind
+    return item.data.get(DRAWN) == _text_of(kind, values_of(settings, kind))
+
+
+def _text_of(kind, values):
+    return " ".join([kind, *(f"{name}={value}" for name, value in values.items())])
 
 
 def add_entry(part, item, operation="union", name="", **more):
@@ -153,6 +167,15 @@ def remove_part(part):
             continue
         if unused:
             bpy.data.batch_remove([each])
+
+
+def activate(context, item):
+    """Select an object alone and make it the active one."""
+    for other in context.selected_objects:
+        other.select_set(False)
+    if item.name in context.view_layer.objects:
+        item.select_set(True)
+        context.view_layer.objects.active = item
 
 
 def middle(items):

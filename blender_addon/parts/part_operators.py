@@ -18,24 +18,7 @@ from . import (
 )
 from .part_error import PartError
 from .part_lists import add_selected, editable_part
-
-
-class Reporting:
-    """Runs `run(context)` and reports what is wrong in one sentence."""
-
-    def execute(self, context):
-        try:
-            return self.run(context) or {"FINISHED"}
-        except (PartError, core.MissingCore) as error:
-            text = str(error)
-        except OSError as error:
-            text = f"{error.filename}: {error.strerror}"
-        except ValueError as error:  # sardf.Error is one; others are ours to mend
-            if type(error).__module__.split(".")[0] != "sardf":
-                raise
-            text = str(error)
-        self.report({"ERROR"}, text)
-        return {"CANCELLED"}
+from .reporting import Reporting
 
 
 class SARDF_OT_part_new(Reporting, bpy.types.Operator):
@@ -57,7 +40,7 @@ class SARDF_OT_part_new(Reporting, bpy.types.Operator):
         context.view_layer.update()
         for item in chosen:
             part_objects.add_entry(part, item)
-        _activate(context, part)
+        part_objects.activate(context, part)
 
 
 class SARDF_OT_primitive_add(Reporting, bpy.types.Operator):
@@ -90,7 +73,7 @@ class SARDF_OT_primitive_add(Reporting, bpy.types.Operator):
             part = part_objects.new_part("Part", context.collection, item.location)
         context.view_layer.update()
         part_objects.add_entry(part, item, self.operation)
-        _activate(context, item)
+        part_objects.activate(context, item)
 
 
 class SARDF_OT_entries_add(Reporting, bpy.types.Operator):
@@ -153,7 +136,7 @@ class SARDF_OT_part_import(Reporting, bpy.types.Operator, ImportHelper):
 
     def run(self, context):
         part = part_import.import_scene(core.load(), self.filepath, context)
-        _activate(context, part)
+        part_objects.activate(context, part)
 
 
 class SARDF_OT_part_export(Reporting, bpy.types.Operator, ExportHelper):
@@ -185,14 +168,6 @@ class SARDF_OT_part_check(Reporting, bpy.types.Operator):
             raise PartError("no part is active; select one")
         for text in part_status.check(core.load(), part, context.evaluated_depsgraph_get()):
             self.report({"INFO"}, text)
-
-
-def _activate(context, item):
-    for other in context.selected_objects:
-        other.select_set(False)
-    if item.name in context.view_layer.objects:
-        item.select_set(True)
-        context.view_layer.objects.active = item
 
 
 CLASSES = (

@@ -2,11 +2,10 @@
 """The active part in the sidebar's tab "sardf", and the menu Add > sardf."""
 
 import textwrap
-from typing import ClassVar
 
 import bpy
 
-from . import part_materials, part_objects, part_properties, part_status, primitives
+from . import part_bake, part_materials, part_objects, part_properties, part_status, primitives
 
 LINE = 36  # characters that fit into the sidebar at its default width
 BLENDS_WITHOUT_RADIUS = ("min_max", "r_function")
@@ -74,7 +73,7 @@ class _Panel:
         self.draw_part(context, part)
 
 
-class _ListPanel(_Panel):
+class ListPanel(_Panel):
     """Of one of a part's lists; there is none without a part."""
 
     bl_parent_id = "SARDF_PT_part"
@@ -98,17 +97,19 @@ class SARDF_PT_part(_Panel, bpy.types.Panel):
             return
         layout.prop(part, "name", text="Part")
         layout.prop(part.sardf_part, "units")
-        _list(layout, "SARDF_UL_entries", part, "entries", rows=5)
+        draw_list(layout, "SARDF_UL_entries", part, "entries", rows=5)
         self._draw_entry(part.sardf_part)
         row = layout.row(align=True)
         row.operator("sardf.part_export", text="Export", icon="EXPORT")
         row.operator("sardf.part_check", text="Check", icon="CHECKMARK")
         layout.operator("sardf.bake", text="Bake Part", icon="TEXTURE")
+        if part_bake.is_baked(part):
+            layout.prop(part.sardf_part, "show")
         status = part_status.status(part, context.evaluated_depsgraph_get())
         _lines(layout, [status.error] if status.error else status.lines, bool(status.error))
 
     def _draw_entry(self, settings):
-        entry = _chosen(settings.entries, settings.entry_index)
+        entry = chosen(settings.entries, settings.entry_index)
         if entry is None:
             return
         column = self.layout.column()
@@ -128,14 +129,14 @@ class SARDF_PT_part(_Panel, bpy.types.Panel):
                 draw_primitive(column, entry.object.sardf_primitive)
 
 
-class SARDF_PT_materials(_ListPanel, bpy.types.Panel):
+class SARDF_PT_materials(ListPanel, bpy.types.Panel):
     bl_idname = "SARDF_PT_materials"
     bl_label = "Materials"
 
     def draw_part(self, _context, part):
         layout, settings = self.layout, part.sardf_part
-        _list(layout, "SARDF_UL_materials", part, "materials")
-        material = _chosen(settings.materials, settings.material_index)
+        draw_list(layout, "SARDF_UL_materials", part, "materials")
+        material = chosen(settings.materials, settings.material_index)
         if material is None:
             return
         column = layout.column()
@@ -144,7 +145,7 @@ class SARDF_PT_materials(_ListPanel, bpy.types.Panel):
             column.prop(material, key)
 
 
-class SARDF_PT_features(_ListPanel, bpy.types.Panel):
+class SARDF_PT_features(ListPanel, bpy.types.Panel):
     bl_idname = "SARDF_PT_features"
     bl_label = "Features"
 
@@ -155,8 +156,8 @@ class SARDF_PT_features(_ListPanel, bpy.types.Panel):
         if settings.rule == "text":
             layout.prop(settings, "rule_text")
             return
-        _list(layout, "SARDF_UL_named", part, "features")
-        feature = _chosen(settings.features, settings.feature_index)
+        draw_list(layout, "SARDF_UL_named", part, "features")
+        feature = chosen(settings.features, settings.feature_index)
         if feature is None:
             return
         column = layout.column()
@@ -180,21 +181,6 @@ class SARDF_PT_features(_ListPanel, bpy.types.Panel):
             column.prop(feature, "influence")
 
 
-class SARDF_PT_sections(_ListPanel, bpy.types.Panel):
-    bl_idname = "SARDF_PT_sections"
-    bl_label = "Sections"
-    bl_options: ClassVar[set] = {"DEFAULT_CLOSED"}
-
-    def draw_part(self, _context, part):
-        settings = part.sardf_part
-        _list(self.layout, "SARDF_UL_named", part, "sections")
-        section = _chosen(settings.sections, settings.section_index)
-        if section is not None:
-            column = self.layout.column()
-            column.prop(section, "object")
-            column.prop(section, "keep" if section.object else "text")
-
-
 class SARDF_MT_add(bpy.types.Menu):
     bl_idname = "SARDF_MT_add"
     bl_label = "sardf"
@@ -206,6 +192,10 @@ class SARDF_MT_add(bpy.types.Menu):
             title = part_properties.title_of(kind)
             made = layout.operator("sardf.primitive_add", text=title, icon=SHAPE_ICONS[kind])
             made.kind = kind
+        layout.separator()
+        for kind, icon in (("plane", "MESH_PLANE"), ("box", "MESH_CUBE")):
+            text = f"Section {part_properties.title_of(kind)}"
+            layout.operator("sardf.section_add", text=text, icon=icon).kind = kind
         layout.separator()
         layout.operator("sardf.part_new", text="Part from Selection", icon="EMPTY_AXIS")
 
@@ -221,11 +211,11 @@ def draw_primitive(layout, settings):
         layout.prop(settings, "formula")
 
 
-def _chosen(items, index):
+def chosen(items, index):
     return items[index] if 0 <= index < len(items) else None
 
 
-def _list(layout, kind, part, which, rows=3):
+def draw_list(layout, kind, part, which, rows=3):
     index = {"entries": "entry_index", "materials": "material_index",
              "features": "feature_index", "sections": "section_index"}[which]  # fmt: skip
     row = layout.row()
@@ -266,7 +256,6 @@ CLASSES = (
     SARDF_PT_part,
     SARDF_PT_materials,
     SARDF_PT_features,
-    SARDF_PT_sections,
     SARDF_MT_add,
 )
 MENUS = (

@@ -15,6 +15,11 @@ OPERATIONS = ("union", "intersection", "difference")
 RULES = ("inverse_distance", "blend_between", "ramp", "partition")
 UNITS = ("um", "mm", "cm", "m", "in")
 NO_KIND = "none"
+SHOWN = (  # of a part: (choice, title, tooltip, number)
+    ("newer", "What Is Newer", "The preview, unless the baked object is up to date and visible", 0),
+    ("preview", "Preview", "The preview; choosing it hides the baked object in viewports", 1),
+    ("baked", "Baked", "The baked object; choosing it makes it visible", 2),
+)
 
 _draw = None  # set by part_objects: draws a primitive's wireframe anew
 
@@ -35,6 +40,13 @@ def _changed(group, _context):
     """Blender itself evaluates an object anew only after changes of properties that have an
     update function; then drivers see the change, too, and so do handlers."""
     group.id_data.update_tag()
+
+
+def _shown_changed(settings, context):
+    _changed(settings, context)
+    baked = settings.baked
+    if settings.show != "newer" and baked is not None and baked.name in context.view_layer.objects:
+        baked.hide_set(settings.show == "preview")
 
 
 def _group(name, properties):
@@ -203,10 +215,36 @@ def _feature():
 def _section():
     return {
         "object": _object("Object", "What it covers is removed; an Empty removes what +z sees"),
+        "operation": bpy.props.EnumProperty(
+            name="Cuts",
+            description="How the section cuts together with the one above it",
+            items=[
+                ("union", "By Itself", "What it covers is removed", 0),
+                ("intersection", "With Above", "Only what the one above covers too is removed", 1),
+            ],
+            update=_changed,
+        ),
         "keep": _text("Keep", "Names of fields that stay whole, separated by commas"),
         "text": _text("Section", "A section as JSON, where no object is chosen"),
         "mute": _flag("Mute", "Do not cut"),
     }
+
+
+def _section_object():
+    return {
+        "is_section": _flag("Is a Section", "Whether the object was made to cut parts",
+                            options={"HIDDEN"}),
+        "everywhere": _flag("All Parts", "Cut all parts of the scene, not only those that list it"),
+        "mute": _flag("Mute", "Do not cut"),
+        "spread": bpy.props.FloatProperty(
+            name="Spread",
+            description=(
+                "How far the piece that it takes off is moved along its z axis, in scene units, "
+                "when pieces are baked"
+            ),
+            default=0.0, update=_changed,
+        ),
+    }  # fmt: skip
 
 
 def _part(entry, material, feature, section):
@@ -233,6 +271,15 @@ def _part(entry, material, feature, section):
         "feature_index": index("features"),
         "sections": items(section, "Sections"),
         "section_index": index("sections"),
+        "scene_sections": _flag(
+            "Sections of All Parts", "Whether section objects that cut all parts cut this one",
+            default=True,
+        ),
+        "show": bpy.props.EnumProperty(
+            name="Show",
+            description="What is seen of a part that is previewed and baked at the same place",
+            items=SHOWN, update=_shown_changed,
+        ),
         "rule": bpy.props.EnumProperty(
             name="Rule", description="How the features make the fractions of the materials",
             items=rules, update=_changed,
@@ -262,6 +309,9 @@ def register():
         _registered.append(cls)
         return cls
 
+    bpy.types.Object.sardf_section = bpy.props.PointerProperty(
+        type=made("SardfSectionObject", _section_object())
+    )
     bpy.types.Object.sardf_primitive = bpy.props.PointerProperty(
         type=made("SardfPrimitive", _primitive())
     )
@@ -277,5 +327,6 @@ def register():
 def unregister():
     del bpy.types.Object.sardf_part
     del bpy.types.Object.sardf_primitive
+    del bpy.types.Object.sardf_section
     while _registered:
         bpy.utils.unregister_class(_registered.pop())

@@ -4,9 +4,10 @@
 Everything else (bake, preview, export) takes the dictionary and knows nothing of objects.
 """
 
+from dataclasses import dataclass
 from pathlib import Path
 
-from . import part_features, part_materials, part_properties, primitives, scene_text, words
+from . import part_features, part_materials, part_properties, part_sections, scene_text, words
 from .part_error import PartError
 from .part_fields import object_field
 from .part_frame import Frame, objects_in_scenes, with_values
@@ -15,25 +16,55 @@ from .part_text import field_from_text, json_from
 from .transforms import Flat, number, placed
 
 
-def scene_of(part, depsgraph):
-    """(scene, warnings) of a part: a dictionary for sardf.Scene.from_json(json.dumps(scene)),
-    with absolute file names, and sentences about what is read otherwise than it may be meant.
+@dataclass
+class Reading:
+    """What a part is: its scene as a scene file has it, and part_sections.Cut for each of the
+    scene's sections, in their order. `warnings`: what is read otherwise than it may be meant."""
+
+    scene: dict
+    warnings: list
+    cuts: list
+
+
+def read(part, depsgraph):
+    """The Reading of a part, with absolute file names.
 
     Values are those of the evaluated `depsgraph`: animated and driven ones count. Raises
     PartError.
     """
-    scene, warnings = document_of(part, depsgraph)
+    reading = _read(part, depsgraph)
     folder = part.sardf_part.folder
-    return (absolute_paths(scene, folder) if folder else scene), warnings
+    if folder:
+        reading.scene = absolute_paths(reading.scene, folder)
+    return reading
+
+
+def scene_of(part, depsgraph):
+    """(scene, warnings) of a part as `read` has it: a dictionary for
+    sardf.Scene.from_json(json.dumps(scene))."""
+    reading = read(part, depsgraph)
+    return reading.scene, reading.warnings
 
 
 def document_of(part, depsgraph):
     """As scene_of, with file names as the imported scene file has them."""
-    now, warnings = generated(part, depsgraph)
+    reading = _read(part, depsgraph)
+    return reading.scene, reading.warnings
+
+
+def _read(part, depsgraph):
+    builder = _Builder(part, depsgraph)
+    scene, warnings = builder.document()
     settings = part.sardf_part
+    if settings.imported:
+        scene = _with_file(part, scene)
+    # What cuts all parts is no part's own, so a file's words of its sections stay.
+    of_all = part_sections.cuts_of_all(builder, settings)
+    if of_all:
+        scene["sections"] = [*scene.get("sections", ()), *(cut.section for cut in of_all)]
     if not settings.imported:
-        return {key: value for key, value in now.items() if value not in ({}, [])}, warnings
-    return _with_file(part, now), warnings
+        scene = {key: value for key, value in scene.items() if value not in ({}, [])}
+    return Reading(scene, warnings, builder.cuts + of_all)
 
 
 def _with_file(part, now):
@@ -58,6 +89,7 @@ class _Builder:
         self.fields = {}
         self.parameters = {}
         self.warnings = []
+        self.cuts = []
         self._shown = objects_in_scenes()
         self._path = [*path, part]  # the parts that contain what is being built
         self._names = {}  # pointer of an object -> the name of its field
@@ -81,7 +113,8 @@ class _Builder:
         fractions = part_features.fractions_of(self, settings, evaluated)
         if fractions is not None:
             scene["fractions"] = fractions
-        scene["sections"] = self._sections(settings)
+        self.cuts = part_sections.cuts_of(self, settings, evaluated)
+        scene["sections"] = [cut.section for cut in self.cuts]
         return scene, self.warnings
 
     def _named_solid(self, solid, settings):
@@ -233,30 +266,6 @@ class _Builder:
         what = f"what '{self.part.name}' remembers of its file"
         original = json_from(self.part.sardf_part.imported, what)
         return {*original.get("fields", ()), *original.get("parameters", ())}
-
-    def _sections(self, settings):
-        made = []
-        for section in settings.sections:
-            if section.mute:
-                continue
-            if section.object is None:
-                if section.text:
-                    made.append(json_from(section.text, f"the section '{section.name}'"))
-                continue
-            if not self.is_there(section.object):
-                self.warnings.append(f"the object of the section '{section.name}' was deleted")
-                continue
-            cut = {"remove": self._section_field(section.object)}
-            keep = [name.strip() for name in section.keep.split(",") if name.strip()]
-            made.append(cut | ({"keep": keep} if keep else {}))
-        return made
-
-    def _section_field(self, item):
-        if item.sardf_part.is_part:
-            return self.part_field(item, item.name)
-        if item.type == "EMPTY" and item.sardf_primitive.kind == part_properties.NO_KIND:
-            return primitives.field_of("half_space", {}, "", self.frame.matrix(item))
-        return self.object_field(item, as_feature=False)
 
 
 def check(part):

@@ -67,6 +67,15 @@ def take_apart(matrix):
     return Placement(matrix.translation.copy(), axes, lengths, straight, 1 if turn > 0 else -1)
 
 
+def is_flat(matrix):
+    """Whether take_apart would refuse a matrix."""
+    try:
+        take_apart(matrix)
+    except Flat:
+        return True
+    return False
+
+
 def quaternion_of(axes):
     """[w, x, y, z] of the turn that brings x, y, z to three unit axes, or None where it is none."""
     rows = Matrix([list(axis) for axis in axes]).transposed()

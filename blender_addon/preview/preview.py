@@ -10,17 +10,42 @@ changed: neither waits for the other.
 import threading
 import traceback
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import bpy
 from mathutils import Matrix
 
 from .. import core
 from ..baked import assemble
-from . import preview_draw, preview_legend, preview_sampler, preview_stand_in, preview_volume
+from . import (
+    preview_draw,
+    preview_legend,
+    preview_sampler,
+    preview_shader,
+    preview_stand_in,
+    preview_volume,
+)
 
 SOON = 0.01  # seconds from a change to the question what there is now; changes in between are one
 TICK = 0.02  # seconds between two looks at the worker thread
 AT_ONCE = 0.015  # seconds that a coarse picture is waited for, so that one redraw shows it
+MOST_CUTS, MOST_PLANES = preview_shader.MOST_CUTS, preview_shader.MOST_PLANES  # of each cut
+
+
+class Shown(NamedTuple):
+    """A part to show.
+
+    source: a scene file's text, the pathlib.Path of one, or a sardf.Scene; an exception in its
+    place is shown in the panel, and the part stays as it was. matrix: of the part's coordinates
+    (scene units) in the world. cuts: what is cut away besides the scene's own sections, MOST_CUTS
+    at most, each as MOST_PLANES planes (a, b, c, d) of the part's coordinates at most: where
+    a x + b y + c z + d > 0 for all of its planes. Where only matrix and cuts differ nothing is
+    sampled again, but the first cut needs the colours inside.
+    """
+
+    source: Any
+    matrix: Matrix
+    cuts: tuple = ()
 
 
 class Part:
@@ -28,6 +53,9 @@ class Part:
 
     def __init__(self, matrix):
         self.matrix = matrix  # from the part's coordinates to the world's
+        self.cuts = ()
+        self.inside = None  # some points of the solid, (N, 3)
+        self.note = ""  # what there is to say of what is shown
         self.wish = None
         self.scene = None  # the sardf.Scene that was sampled last
         self.volume = None
@@ -35,6 +63,14 @@ class Part:
         self.range = None  # of the number that is shown
         self.error = ""
         self.latency = 0.0  # seconds from the change to the last samples
+        self._cut = (None, (), None)  # scene, cuts, and the scene cut by these
+
+    def cut_scene(self, sardf):
+        """The scene that was sampled last, with the cuts as sections."""
+        if self._cut[:2] != (self.scene, self.cuts):
+            made = preview_volume.cut_scene(sardf, self.scene, self.cuts)
+            self._cut = (self.scene, self.cuts, made)
+        return self._cut[2]
 
 
 class Preview:
@@ -48,24 +84,22 @@ class Preview:
         self._sampler = None
         self._painter = None
 
-    def update(self, key, source, matrix):
-        """Show a part, or show it changed.
+    def update(self, key, source, matrix, cuts=()):
+        """Show a part, or show it changed. key: its name, any hashable; the others as in Shown.
 
-        key: its name, any hashable. source: a scene file's text, the pathlib.Path of one, or a
-        sardf.Scene; an exception in its place is shown in the panel, and the part stays as it was.
-        matrix: of the part's coordinates (scene units) in the world. Where only the matrix differs
-        nothing is sampled again. Returns whether anything differs.
+        Returns whether anything differs.
         """
         settings = bpy.context.scene.sardf_preview
         is_new = key not in self.parts
         part = self.parts.setdefault(key, Part(matrix.copy()))
-        differs = is_new or part.matrix != matrix
-        part.matrix = matrix.copy()
+        differs = is_new or part.matrix != matrix or part.cuts != cuts
+        part.matrix, part.cuts = matrix.copy(), cuts
         if isinstance(source, Exception):
             differs = differs or part.error != str(source)
             part.error = str(source)
             return differs
         preview_stand_in.move(key, matrix)
+        part.note = self._note(part)
         wish = self._wish(source, part, settings)
         if wish == part.wish:
             return differs
@@ -75,6 +109,14 @@ class Preview:
             sampler.request(key, wish)
             _start(_tick, TICK)
         return True
+
+    def _note(self, part):
+        """What is said where nothing is to be seen."""
+        if part.inside is None or not (part.cuts or part.scene.section_count):
+            return ""
+        if preview_volume.is_left(core.load(), part.inside, () if self.no_gpu else part.cuts):
+            return ""
+        return f"the sections leave nothing of {part.scene.title or 'the part'}"
 
     def hide(self, key):
         """Forget a part."""
@@ -115,20 +157,6 @@ class Preview:
             self.wait(0.1)
             self.poll()
 
-    def plane(self, part, settings):
-        """The section in a part's coordinates, (a, b, c, d); zeros: there is none."""
-        if not settings.section:
-            return (0.0, 0.0, 0.0, 0.0)
-        cutter = settings.section_object
-        if cutter is not None:
-            world = cutter.matrix_world
-            return preview_draw.plane_in(part.matrix, world.translation, world.col[2].xyz)
-        if part.scene is None:
-            return (0.0, 0.0, 0.0, 0.0)
-        axis = "XYZ".index(settings.section_axis)
-        share = settings.section_position
-        return preview_draw.local_plane(part.scene.bounds, axis, share, settings.section_flip)
-
     def spacing(self, part, settings):
         """Between lines, in the part's units; 0: there are none."""
         if not settings.stripes:
@@ -144,7 +172,7 @@ class Preview:
                 self._painter.draw(
                     part.textures,
                     part.matrix,
-                    self.plane(part, settings),
+                    part.cuts,
                     part.range or (0.0, 0.0),
                     self.spacing(part, settings),
                     context.region.height,
@@ -171,10 +199,10 @@ class Preview:
         return preview_volume.Wish(
             source=source,
             resolution=int(settings.quality),
-            cut=settings.section,
+            cut=bool(part.cuts),
             channel=channel,
             material=material,
-            plane=self.plane(part, settings) if self.no_gpu else None,
+            stand_in=part.cuts if self.no_gpu else None,
             stamp=source.stat().st_mtime_ns if is_file and source.is_file() else 0,
         )
 
@@ -194,6 +222,8 @@ class Preview:
             return
         part.error = ""
         part.scene = result.scene
+        part.inside = result.inside
+        part.note = self._note(part)
         part.latency = result.latency
         part.range = result.range if result.wish.channel != "base_color" else None
         if isinstance(result, preview_volume.StandIn):
@@ -207,17 +237,22 @@ class Preview:
 CURRENT = Preview()
 
 
-def from_file(scene, _depsgraph):
+def from_file(scene, depsgraph):
     """The part of the scene file that the panel names."""
     path = bpy.path.abspath(scene.sardf.filepath)
     if not path:
         return {}
     baked = assemble.find(scene, path)
-    return {path: (Path(path), Matrix() if baked is None else baked.matrix_world)}
+    matrix = Matrix() if baked is None else baked.matrix_world
+    cuts = [cut for cutter in cutters for cut in cutter(scene, depsgraph, matrix)]
+    return {path: Shown(Path(path), matrix, tuple(cuts[:MOST_CUTS]))}
 
 
-# Functions (scene, depsgraph) -> {key: (source, matrix)} as Preview.update takes them. They are
-# called by a timer, never by a handler, on the main thread: they must be quick and change nothing.
+cutters = []  # functions (scene, depsgraph, matrix) -> cuts of what has that matrix and no part
+
+
+# Functions (scene, depsgraph) -> {key: Shown}. They are called by a timer, never by a handler, on
+# the main thread: they must be quick and change nothing.
 providers = [from_file]
 
 
@@ -249,7 +284,7 @@ def collect():
     gone = [key for key in CURRENT.parts if key not in found]
     for key in gone:
         CURRENT.hide(key)
-    differ = [CURRENT.update(key, source, matrix) for key, (source, matrix) in found.items()]
+    differ = [CURRENT.update(key, *shown) for key, shown in found.items()]
     _set_drawing(True)
     return bool(gone) or any(differ)
 
@@ -257,8 +292,6 @@ def collect():
 def update_now():
     """Collect, sample and show, waiting for it: what scripts and Blender without a window need."""
     collect()
-    CURRENT.finish()
-    collect()  # a section may need to know how large parts are
     CURRENT.finish()
 
 

@@ -42,14 +42,13 @@ class Painter:
     def upload(self, volume):
         return Textures(volume, self._shader)
 
-    def draw(self, textures, matrix, plane, value_range, line_spacing, height):
+    def draw(self, textures, matrix, cuts, value_range, line_spacing, height):
         """Draw one part.
 
-        matrix: from the part's coordinates to the world's. plane: (a, b, c, d) of the part's
-        coordinates, where a x + b y + c z + d > 0 is cut away; zeros: nothing. value_range: what
-        the colour map begins and ends with; (0, 0): samples are colours. line_spacing: of lines of
-        equal distance, scene units, and the colour map is striped; 0: none. height: of the region,
-        in pixels.
+        matrix: from the part's coordinates to the world's. cuts: as preview.Shown has them.
+        value_range: what the colour map begins and ends with; (0, 0): samples are colours.
+        line_spacing: of lines of equal distance, scene units, and the colour map is striped; 0:
+        none. height: of the region, in pixels.
         """
         view = gpu.matrix.get_model_view_matrix()
         projection = gpu.matrix.get_projection_matrix()
@@ -65,7 +64,8 @@ class Painter:
                 "to_clip": to_clip.transposed(),
                 "from_clip": to_clip.inverted_safe().transposed(),
                 "to_view_normal": to_view_normal.transposed(),
-                "plane": plane,
+                "cuts": preview_shader.planes_of(cuts),
+                "cut_count": len(cuts),
                 "low": volume.lo,
                 "unit": volume.unit,
                 "per_size": 1 / (volume.hi - volume.lo),
@@ -89,19 +89,3 @@ class Painter:
             gpu.state.face_culling_set("NONE")
             gpu.state.depth_mask_set(False)
             gpu.state.depth_test_set("NONE")
-
-
-def plane_in(matrix, point, normal):
-    """The plane (a, b, c, d) of a part's coordinates from a point and a normal of the world's."""
-    inner = matrix.to_3x3().transposed() @ normal
-    return (*inner, normal.dot(matrix.translation - point))
-
-
-def local_plane(bounds, axis, share, is_flipped):
-    """The plane across one of a part's axes, `share` of the way through its bounds (lo, hi)."""
-    lo, hi = bounds
-    at = lo[axis] + share * (hi[axis] - lo[axis])
-    plane = [0.0, 0.0, 0.0, 0.0]
-    sign = -1.0 if is_flipped else 1.0
-    plane[axis], plane[3] = sign, -sign * at
-    return tuple(plane)

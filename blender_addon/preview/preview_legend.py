@@ -104,7 +104,7 @@ def messages(preview):
     """What is wrong, one line each."""
     found = [preview.error] if preview.error else []
     for part in preview.parts.values():
-        found += part.error.splitlines()[:3]
+        found += (part.error or part.note).splitlines()[:3]
     return found
 
 

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The preview's part of the tab "sardf", and the buttons in it."""
 
-import math
 import textwrap
-from typing import ClassVar
 
 import bpy
 
@@ -27,25 +25,6 @@ class SARDF_OT_preview_update(bpy.types.Operator):
         if wrong:
             self.report({"ERROR"}, "; ".join(wrong))
             return {"CANCELLED"}
-        return {"FINISHED"}
-
-
-class SARDF_OT_section_plane(bpy.types.Operator):
-    bl_idname = "sardf.preview_section_plane"
-    bl_label = "Add Section Plane"
-    bl_description = "Add an empty object that cuts the preview open: move and turn it"
-    bl_options: ClassVar[set] = {"UNDO"}
-
-    def execute(self, context):
-        plane = bpy.data.objects.new("section plane", None)
-        plane.empty_display_type = "SINGLE_ARROW"
-        plane.empty_display_size = max(1.0, context.scene.cursor.location.length)
-        plane.location = context.scene.cursor.location
-        plane.rotation_euler = (math.pi / 2, 0.0, 0.0)  # its z axis points to the front
-        context.collection.objects.link(plane)
-        settings = context.scene.sardf_preview
-        settings.section_object = plane
-        settings.section = True
         return {"FINISHED"}
 
 
@@ -74,15 +53,6 @@ class SARDF_PT_preview(bpy.types.Panel):
         column.prop(settings, "stripes")
         if settings.stripes:
             column.prop(settings, "spacing")
-        column = layout.column()
-        column.prop(settings, "section")
-        if settings.section:
-            column.prop(settings, "section_object")
-            if settings.section_object is None:
-                column.prop(settings, "section_axis")
-                column.prop(settings, "section_position")
-                column.prop(settings, "section_flip")
-                column.operator("sardf.preview_section_plane", icon="EMPTY_SINGLE_ARROW")
         layout.operator("sardf.probe", icon="EYEDROPPER")
 
     def _draw_state(self):
@@ -99,7 +69,6 @@ class SARDF_PT_preview(bpy.types.Panel):
 
 CLASSES = (
     SARDF_OT_preview_update,
-    SARDF_OT_section_plane,
     preview_probe.SARDF_OT_probe,
     SARDF_PT_preview,
 )

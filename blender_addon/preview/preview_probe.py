@@ -4,6 +4,7 @@
 import bpy
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 
+from .. import core
 from . import preview, preview_legend, preview_reading
 
 BESIDE = 18  # pixels from the cursor
@@ -85,18 +86,17 @@ class SARDF_OT_probe(bpy.types.Operator):
         sheet.draw()
 
 
-def read(region, view, at, scene):
+def read(region, view, at):
     """The lines about the nearest part under a pixel of a 3-D view; empty where there is none."""
     origin = region_2d_to_origin_3d(region, view, at)
     ray = region_2d_to_vector_3d(region, view, at)
-    settings = scene.sardf_preview
     nearest, found = float("inf"), []
     for part in preview.CURRENT.parts.values():
         if part.scene is None:
             continue
         inverse = part.matrix.inverted_safe()
-        plane = preview.CURRENT.plane(part, settings)
-        point = part.scene.first_point(inverse @ origin, inverse.to_3x3() @ ray, plane)
+        shown = part.cut_scene(core.load())
+        point = shown.first_point(inverse @ origin, inverse.to_3x3() @ ray)
         if point is None:
             continue
         away = (part.matrix @ type(origin)(point) - origin).length

@@ -140,7 +140,7 @@ class Sampler:
                 if key in self._open:  # not forgotten meanwhile
                     self._scenes[key] = (origin, task.scene)
         check(task.scene, task.wish)
-        if task.wish.plane is not None:
+        if task.wish.stand_in is not None:
             task.is_fine = True
             return make_stand_in(self._sardf, task.scene, task.wish, go_on)
         return make_volume(task.scene, task.wish, task.resolution, go_on)

@@ -61,39 +61,6 @@ class SardfPreviewSettings(bpy.types.PropertyGroup):
         min=0.0,
         update=preview.settings_changed,
     )
-    section: bpy.props.BoolProperty(
-        name="Section",
-        description="Cut the preview open; the parts themselves stay whole",
-        update=preview.settings_changed,
-    )
-    section_object: bpy.props.PointerProperty(
-        name="Plane",
-        description="Cuts away what lies above this object's x-y plane, on the side of its z axis",
-        type=bpy.types.Object,
-        update=preview.settings_changed,
-    )
-    section_axis: bpy.props.EnumProperty(
-        name="Axis",
-        description="The part's own axis that the section cuts across",
-        items=[(axis, axis, f"Across {axis}") for axis in "XYZ"],
-        default="Y",
-        update=preview.settings_changed,
-    )
-    section_position: bpy.props.FloatProperty(
-        name="Position",
-        description="Where the section cuts, from one end of the part to the other",
-        default=0.5,
-        min=0.0,
-        max=1.0,
-        subtype="FACTOR",
-        update=preview.settings_changed,
-    )
-    section_flip: bpy.props.BoolProperty(
-        name="Other Side",
-        description="Cut away the lower side",
-        default=True,
-        update=preview.settings_changed,
-    )
 
 
 def register():

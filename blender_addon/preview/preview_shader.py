@@ -16,6 +16,8 @@ COLOR_MAP = (
     (0.3327, 1.3868, 0.092, -19.2918, 56.6563, -65.321, 26.2721),
 )
 BANDS = 10  # of a colour bar with stripes
+MOST_CUTS, MOST_PLANES = 8, 8  # what is cut away, and how many planes bound each of it at most
+NO_PLANE = (0.0, 0.0, 0.0, 1.0)  # everything lies above it
 
 # One block of uniforms, which may be larger than push constants: (name, floats), in the order of
 # memory, so that no member straddles 16 bytes (std140).
@@ -23,7 +25,7 @@ MEMBERS = (
     ("to_clip", 16),
     ("from_clip", 16),
     ("to_view_normal", 16),
-    ("plane", 4),
+    ("cuts", 4 * MOST_CUTS * MOST_PLANES),
     ("low", 3),
     ("unit", 1),
     ("per_size", 3),
@@ -31,8 +33,9 @@ MEMBERS = (
     ("cell", 3),
     ("pixel", 1),
     ("value_range", 2),
+    ("cut_count", 1),
 )
-TYPES = {1: "float", 2: "vec2", 3: "vec3", 4: "vec4", 16: "mat4"}
+TYPES = {1: "float", 2: "vec2", 3: "vec3", 16: "mat4"}
 
 VERTEX = """
 void main() {
@@ -89,6 +92,73 @@ float lit(vec3 normal) {
   return 0.22 + 0.62 * key + 0.16 * fill + 0.1 * max(normal.z, 0.0);
 }
 
+// Of what each cut takes away, where the ray enters and leaves it, and by which plane it leaves.
+float enter_cut[most_cuts], leave_cut[most_cuts];
+vec3 leave_normal[most_cuts];
+
+void meet_cuts(vec3 origin, vec3 ray) {
+  for (int c = 0; c < int(part.cut_count); ++c) {
+    float from = -1e30, to = 1e30;
+    leave_normal[c] = vec3(0.0, 0.0, 1.0);
+    for (int k = 0; k < most_planes; ++k) {
+      vec4 plane = part.cuts[c * most_planes + k];
+      float height = dot(plane.xyz, origin) + plane.w, rise = dot(plane.xyz, ray);
+      if (rise == 0.0) {
+        if (height <= 0.0) to = -1e30;
+      } else if (rise > 0.0) {
+        from = max(from, -height / rise);
+      } else if (-height / rise < to) {
+        to = -height / rise;
+        leave_normal[c] = plane.xyz;
+      }
+    }
+    enter_cut[c] = from;
+    leave_cut[c] = to;
+  }
+}
+
+// Where the ray goes on from t: behind all cuts that t lies in. `normal`: of the last one's plane.
+float behind_cuts(float t, float slack, inout vec3 normal) {
+  for (int again = 0; again < int(part.cut_count); ++again) {
+    for (int c = 0; c < int(part.cut_count); ++c) {
+      if (enter_cut[c] - slack <= t && t < leave_cut[c]) {
+        t = leave_cut[c];
+        normal = leave_normal[c];
+      }
+    }
+  }
+  return t;
+}
+
+float next_cut(float t, float end) {
+  for (int c = 0; c < int(part.cut_count); ++c) {
+    if (enter_cut[c] > t && enter_cut[c] < leave_cut[c]) end = min(end, enter_cut[c]);
+  }
+  return end;
+}
+
+// The first point of the solid on the ray from t on, but before `stop`, where it ends otherwise.
+bool reach_surface(vec3 origin, vec3 ray, inout float t, float stop) {
+  float f = field_at(origin + t * ray);
+  float reach = dot(part.cell, vec3(1.0));
+  float least = 0.3 * min(part.cell.x, min(part.cell.y, part.cell.z));
+  float before = t, outside = f;
+  for (int i = 0; i < 1000 && f < 0.0 && t < stop; ++i) {
+    before = t;
+    outside = f;
+    t = min(t + max(-f * reach, least), stop);
+    f = field_at(origin + t * ray);
+  }
+  if (f < 0.0) return false;
+  for (int i = 0; i < 4; ++i) {
+    float share = clamp(outside / (outside - f), 0.05, 0.95);
+    float middle = mix(before, t, share);
+    float g = field_at(origin + middle * ray);
+    if (g < 0.0) { before = middle; outside = g; } else { t = middle; f = g; }
+  }
+  return true;
+}
+
 void main() {
   vec2 at = clip.xy / clip.w;
   vec4 front = part.from_clip * vec4(at, -1.0, 1.0), back = part.from_clip * vec4(at, 1.0, 1.0);
@@ -99,45 +169,26 @@ void main() {
   vec3 enter = min(a, b), leave = max(a, b);
   float t = max(max(enter.x, enter.y), max(enter.z, 0.0));
   float end = min(leave.x, min(leave.y, leave.z));
-  bool on_cut = false;
-  float height = dot(part.plane.xyz, origin) + part.plane.w, rise = dot(part.plane.xyz, ray);
-  if (dot(part.plane.xyz, part.plane.xyz) > 0.0) {
-    // What lies above the plane is taken away.
-    float crossing = -height / (abs(rise) > 1e-9 ? rise : 1e-9);
-    if (rise < 0.0) {
-      on_cut = crossing > t;
-      t = max(t, crossing);
-    } else {
-      end = min(end, crossing);
-    }
+  bool is_found = false, on_cut = false;
+  vec3 cut_normal = vec3(0.0);
+  float slack = 1e-3 * min(part.cell.x, min(part.cell.y, part.cell.z));
+  meet_cuts(origin, ray);
+  // Each turn goes through what the cuts leave up to the next of them.
+  for (int turn = 0; turn <= most_cuts && !is_found; ++turn) {
+    float begin = t;
+    t = behind_cuts(t, slack, cut_normal);
+    if (!(t < end)) discard;
+    on_cut = t > begin && field_at(origin + t * ray) >= 0.0;
+    is_found = on_cut || field_at(origin + t * ray) >= 0.0;
+    if (!is_found) is_found = reach_surface(origin, ray, t, next_cut(t, end));
   }
-  if (!(t < end)) discard;
-  float f = field_at(origin + t * ray);
-  if (f < 0.0) {
-    on_cut = false;
-    float reach = dot(part.cell, vec3(1.0));
-    float least = 0.3 * min(part.cell.x, min(part.cell.y, part.cell.z));
-    float before = t, outside = f;
-    for (int i = 0; i < 1000 && f < 0.0 && t < end; ++i) {
-      before = t;
-      outside = f;
-      t = min(t + max(-f * reach, least), end);
-      f = field_at(origin + t * ray);
-    }
-    if (f < 0.0) discard;
-    for (int i = 0; i < 4; ++i) {
-      float share = clamp(outside / (outside - f), 0.05, 0.95);
-      float middle = mix(before, t, share);
-      float g = field_at(origin + middle * ray);
-      if (g < 0.0) { before = middle; outside = g; } else { t = middle; f = g; }
-    }
-  }
+  if (!is_found) discard;
   vec3 hit = origin + t * ray;
   vec4 seen = part.to_clip * vec4(hit, 1.0);
   vec3 color = color_at(hit);
   if (on_cut) {
     if (part.line_spacing > 0.0 && part.value_range.x >= part.value_range.y) {
-      float line = line_at(hit, part.plane.xyz, part.pixel * seen.w);
+      float line = line_at(hit, cut_normal, part.pixel * seen.w);
       color = mix(color, vec3(dot(color, vec3(0.333)) > 0.05 ? 0.0 : 0.6), 0.75 * line);
     }
   } else {
@@ -164,6 +215,21 @@ def map_color(t):
     )
 
 
+def planes_of(cuts):
+    """The planes of all cuts, with NO_PLANE where there are none."""
+    planes = [NO_PLANE] * (MOST_CUTS * MOST_PLANES)
+    for number, cut in enumerate(cuts):
+        first = number * MOST_PLANES
+        planes[first : first + len(cut)] = cut
+    return planes
+
+
+def _declared(name, size):
+    if name == "cuts":
+        return f"vec4 cuts[{size // 4}];"
+    return f"{TYPES[size]} {name};"
+
+
 def block(values):
     """The uniforms {name: floats, matrices by columns} as a buffer of the graphics card."""
     numbers = [float(number) for name, _ in MEMBERS for number in np.ravel(values[name])]
@@ -176,12 +242,14 @@ def create():
     between = gpu.types.GPUStageInterfaceInfo("sardf_preview")
     between.smooth("VEC4", "clip")
     info = gpu.types.GPUShaderCreateInfo()
-    members = " ".join(f"{TYPES[size]} {name};" for name, size in MEMBERS)
+    members = " ".join(_declared(name, size) for name, size in MEMBERS)
     info.typedef_source(f"struct SardfPart {{ {members} }};")
     info.uniform_buf(0, "SardfPart", "part")
     info.sampler(0, "FLOAT_3D", "field_samples")
     info.sampler(1, "FLOAT_3D", "color_samples")
     info.define("bands", f"{BANDS}.0")
+    info.define("most_cuts", str(MOST_CUTS))
+    info.define("most_planes", str(MOST_PLANES))
     for name, coefficients in zip(("RED", "GREEN", "BLUE"), COLOR_MAP, strict=True):
         info.define(f"COLOR_MAP_{name}", f"({_polynomial(coefficients)})")
     info.vertex_in(0, "VEC3", "position")

@@ -57,7 +57,7 @@ def _colors(made):
     """Linear colours (V, 4): the materials', or the colour map's of a number."""
     if made.colors is not None:
         return np.nan_to_num(made.colors)
-    low, high = made.range
+    low, high = made.range or (0.0, 1.0)
     share = np.nan_to_num((made.values - low) / ((high - low) or 1.0))
     table = np.array([preview_shader.map_color(i / 255) for i in range(256)])
     encoded = table[np.clip(share * 255, 0, 255).astype(int)]

@@ -9,10 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from ..baked import job
+
 STAND_IN = 40  # cells of the mesh that stands in for textures
 MARGIN = 2  # samples around the bounds, so that the surface lies between samples
 COLOR = "colour"  # what can be shown: this, "fraction of" a material, or an attribute's name
 FRACTION = "fraction of "
+SOME = 20000  # points in a solid that tell whether sections leave any of it
 LARGEST = 1000.0  # of the field in its own unit: half floats hold more, and it is far outside
 
 
@@ -51,8 +54,8 @@ class Wish:
 
     source: a scene file's text, the pathlib.Path of one, or a sardf.Scene. resolution: samples
     along the longest side. cut: colours inside, too, for a section that moves. channel, material:
-    as sardf.Scene.sample_volume takes them. plane: (a, b, c, d) in place of textures a mesh is
-    wanted that is cut open there, by (0, 0, 0, 0) nowhere.
+    as sardf.Scene.sample_volume takes them. stand_in: in place of textures a mesh is wanted that
+    these cuts (see is_left) cut open.
     """
 
     source: Any
@@ -60,7 +63,7 @@ class Wish:
     cut: bool = False
     channel: str = "base_color"
     material: str = ""
-    plane: tuple | None = None
+    stand_in: tuple | None = None
     stamp: int = 0  # of a file: when it was changed
     made: float = field(default_factory=time.monotonic, compare=False)
 
@@ -71,7 +74,8 @@ class Volume:
 
     counts: samples along x, y and z. field: float32, x fastest, in multiples of `unit` scene units,
     no steeper than one unit for each sum of a cell's edges. color: float32, four for each sample,
-    linear, times alpha. Both are None once they are textures. range: of the number that is shown,
+    linear, times alpha. Both are None once they are textures. inside: some of the solid's points,
+    (N, 3). range: of the number that is shown,
     or of the first component, or None. latency: seconds since the wish.
     """
 
@@ -83,6 +87,7 @@ class Volume:
     field: np.ndarray | None
     unit: float
     color: np.ndarray | None
+    inside: np.ndarray
     range: tuple | None
     seconds: float
     latency: float
@@ -140,10 +145,43 @@ def make_volume(scene, wish, resolution, progress=None):
         field=values,
         unit=unit,
         color=samples["color"].reshape(-1),
+        inside=_points_inside(values, lo, hi, counts),
         range=(0.0, 1.0) if wish.channel == "fractions" else samples["range"],
         seconds=now - begun,
         latency=now - wish.made,
     )
+
+
+def _points_inside(values, lo, hi, counts):
+    """Samples in the solid, SOME of them at most, evenly taken."""
+    found = np.flatnonzero(values >= 0)
+    found = found[:: max(1, len(found) // SOME)]
+    place = np.stack(np.unravel_index(found, counts[::-1])[::-1], axis=-1)
+    return lo + (place + 0.5) * ((hi - lo) / counts)
+
+
+def removed(sardf, cut):
+    """The field of what a cut takes away: where a x + b y + c z + d > 0 for all its planes."""
+    fields = []
+    for *normal, offset in cut:
+        square = sum(n * n for n in normal)
+        fields.append(sardf.half_space(point=[-offset * n / square for n in normal], normal=normal))
+    return fields[0] if len(fields) == 1 else sardf.intersection(fields)
+
+
+def is_left(sardf, points, cuts):
+    """Whether any of the points (N, 3) is left by the cuts, each a tuple of planes."""
+    gone = np.zeros(len(points), bool)
+    for cut in cuts:
+        gone |= removed(sardf, cut)(points) >= 0
+    return not gone.all()
+
+
+def cut_scene(sardf, scene, cuts):
+    """The scene with the cuts as sections."""
+    for cut in cuts:
+        scene = scene.section(remove=removed(sardf, cut))
+    return scene
 
 
 @dataclass
@@ -159,18 +197,23 @@ class StandIn:
     values: np.ndarray | None
     range: tuple | None
     latency: float
+    inside: np.ndarray  # points that are left by the cuts; none where they leave nothing
+
+
+def _mesh(sardf, scene, progress):
+    """(vertices, faces) of a scene; none where its sections leave nothing."""
+    try:
+        mesh = scene.mesh(resolution=STAND_IN, size=0, progress=progress)
+    except sardf.Error:
+        if not job.leaves_nothing(scene):
+            raise
+        return np.zeros((0, 3)), np.zeros((0, 4), int)
+    return mesh.vertices, mesh.faces
 
 
 def make_stand_in(sardf, scene, wish, progress=None):
     """The StandIn of a scene that was read from the wish's source."""
-    shown = scene
-    *normal, offset = wish.plane
-    square = sum(n * n for n in normal)
-    if square > 0:
-        point = [-offset * n / square for n in normal]
-        shown = scene.section(remove=sardf.half_space(point=point, normal=normal))
-    mesh = shown.mesh(resolution=STAND_IN, size=0, progress=progress)
-    vertices, faces = mesh.vertices, mesh.faces
+    vertices, faces = _mesh(sardf, cut_scene(sardf, scene, wish.stand_in), progress)
     colors = values = None
     if wish.channel == "base_color":
         colors = np.ones((len(vertices), 4))
@@ -183,7 +226,8 @@ def make_stand_in(sardf, scene, wish, progress=None):
         values = scene.attributes[wish.channel](vertices)
     else:
         raise PreviewError(f"the part has no attribute '{wish.channel}'")
-    span = None if values is None else (float(np.nanmin(values)), float(np.nanmax(values)))
+    finite = [] if values is None else values[np.isfinite(values)]
+    span = (float(finite.min()), float(finite.max())) if len(finite) else None
     span = (0.0, 1.0) if wish.channel == "fractions" else span
     latency = time.monotonic() - wish.made
-    return StandIn(scene, wish, vertices, faces, colors, values, span, latency)
+    return StandIn(scene, wish, vertices, faces, colors, values, span, latency, vertices)

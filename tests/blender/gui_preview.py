@@ -125,22 +125,26 @@ def shown():
 def cut():
     """The half towards the viewer is taken away, then less of it."""
     settings = bpy.context.scene.sardf_preview
-    settings.section = True
-    settings.section_axis, settings.section_position, settings.section_flip = "Y", 0.5, True
+    window, area, regions = view()
+    with bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"]):
+        bpy.ops.sardf.section_add(kind="plane")  # there is no part: it cuts all that is shown
+    plane = bpy.context.active_object
+    plane.hide_set(True)  # its lines are not in the way
     yield from settled()
     screenshot("preview_cut")
     points = [(x / 4, 0.0, z / 4) for x in range(-18, 19) for z in range(-18, 19)]
     result["cut"] = [[p, pixel(p)] for p in points if Vector(p).length < 4.7]
-    settings.section_position = 0.1
+    plane.location.y = -4
     yield from redrawn()
     screenshot("preview_less_cut")
-    settings.stripes, settings.spacing, settings.section_position = True, 1.0, 0.5
+    settings.stripes, settings.spacing, plane.location.y = True, 1.0, 0.0
     yield from settled()
     screenshot("preview_lines")
     # In front of the red feature, where no line of whole distance is: at 0.5 and at 1.
     result["between lines"] = pixel((4.5, 0, 0))
     result["on a line"] = pixel((4.0, 0, 0))
-    settings.stripes = settings.section = False
+    settings.stripes = False
+    bpy.data.meshes.remove(plane.data)
 
 
 def moved(preview):
@@ -148,7 +152,7 @@ def moved(preview):
     wish = drawn[SCENE][0]
     source = Path(SCENE)
     place = Matrix.Translation((7, 0, 0))
-    preview.providers[:] = [lambda _scene, _depsgraph: {SCENE: (source, place)}]
+    preview.providers[:] = [lambda _scene, _depsgraph: {SCENE: preview.Shown(source, place)}]
     yield from settled()
     screenshot("preview_moved")
     result["sampled again"] = preview.CURRENT.parts[SCENE].wish.made > drawn[SCENE][0].made
@@ -156,12 +160,12 @@ def moved(preview):
     result["new center"] = pixel((7, 0, 0.6))
     result["old end"] = pixel((-4, 0, 0.6))
     place = Matrix.Diagonal((-1, 1, 0.5, 1))  # mirrored and flat
-    preview.providers[:] = [lambda _scene, _depsgraph: {SCENE: (source, place)}]
+    preview.providers[:] = [lambda _scene, _depsgraph: {SCENE: preview.Shown(source, place)}]
     yield from settled()
     screenshot("preview_mirrored")
     result["mirrored"] = [pixel((-4, 0, 0)), pixel((4, 0, 0)), pixel((0.6, 0, 3.5))]
     place = Matrix()
-    preview.providers[:] = [lambda _scene, _depsgraph: {SCENE: (source, place)}]
+    preview.providers[:] = [lambda _scene, _depsgraph: {SCENE: preview.Shown(source, place)}]
     yield from settled()
 
 
@@ -233,7 +237,7 @@ def dragged(preview):
 
     def follow(scene, _depsgraph):
         text["fields"]["ball"]["sphere"]["radius"] = 3 + scene.objects["handle"].location.x
-        return {"dragged": (json.dumps(text), Matrix())}
+        return {"dragged": preview.Shown(json.dumps(text), Matrix())}
 
     preview.providers[:] = [follow]
     yield from settled()

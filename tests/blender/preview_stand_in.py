@@ -53,11 +53,11 @@ def main(zip_file, scene_file, result_file):
     (item,) = bpy.data.objects
     result["whole"] = mesh_of(item)
     result["hidden from renders"] = item.hide_render
-    settings.section, settings.section_axis, settings.section_position = True, "Y", 0.5
-    settings.section_flip = True
+    bpy.ops.sardf.section_add(kind="plane")  # there is no part: it cuts all that is shown
+    plane = bpy.context.active_object
     update_error()
     result["cut"] = mesh_of(item)
-    settings.section = False
+    bpy.data.meshes.remove(plane.data)
     settings.show = "fraction of red"
     update_error()
     result["fraction"] = mesh_of(item)
@@ -66,10 +66,12 @@ def main(zip_file, scene_file, result_file):
     settings.show = "colour"
     matrix = Matrix.Translation((1, 2, 3))
     source = Path(scene_file).read_text()
-    preview.providers[:] = [lambda _scene, _depsgraph: {scene_file: (source, matrix)}]
+    shown = preview.Shown(source, matrix)
+    preview.providers[:] = [lambda _scene, _depsgraph: {scene_file: shown}]
     update_error()
     result["place"] = list(item.matrix_world.translation)
-    preview.providers[:] = [lambda *_: {scene_file: (ValueError("the part is empty"), matrix)}]
+    wrong = preview.Shown(ValueError("the part is empty"), matrix)
+    preview.providers[:] = [lambda *_: {scene_file: wrong}]
     result["part's error"] = update_error()
     settings.enabled = False
     preview.collect()

@@ -139,17 +139,57 @@ def test_vectors_are_refused(sampler):
 
 
 def test_a_mesh_stands_in_where_there_are_no_textures(sampler):
-    sampler.request("ball", Wish(ball(), plane=(0.0, -2.0, 0.0, 0.0)))
+    sampler.request("ball", Wish(ball(), stand_in=(((0.0, -2.0, 0.0, 0.0),),)))
     made = results(sampler, 1)[0][1]
     assert not sampler.busy
     assert made.vertices[:, 1].min() > -1e-6
     on_cut = np.abs(made.vertices[:, 1]) < 1e-6
     assert on_cut.sum() > 100
     np.testing.assert_allclose(made.colors[:, :3], expected_colors(made.vertices), atol=1e-9)
-    sampler.request("ball", Wish(ball(), channel="fractions", material="red", plane=(0.0,) * 4))
+    sampler.request("ball", Wish(ball(), channel="fractions", material="red", stand_in=()))
     made = results(sampler, 1)[0][1]
     np.testing.assert_allclose(made.values, expected_fractions(made.vertices)[:, 0], atol=1e-9)
     assert made.range == (0.0, 1.0)
+
+
+CORNER = ((1.0, 0.0, 0.0, 0.0), (0.0, -2.0, 0.0, 0.0), (0.0, 0.0, 0.5, 0.5))  # x > 0, y < 0, z > -1
+ALL = ((0.0, 0.0, 1.0, 9.0),)
+
+
+def test_cuts_leave_what_is_below_one_of_their_planes(sampler):
+    """Of one cut's planes all count, and of several cuts each."""
+    sampler.request("ball", Wish(ball(), stand_in=(CORNER, ((-1.0, 0.0, 0.0, -3.0),))))
+    made = results(sampler, 1)[0][1]
+    x, y, z = made.vertices.T
+    assert not ((x > 1e-6) & (y < -1e-6) & (z > -1 + 1e-6)).any()
+    assert x.min() > -3 - 1e-6
+    assert (np.abs(x) < 1e-6).sum() > 20  # the corner's two sides and its floor
+    assert (np.abs(y) < 1e-6).sum() > 20
+    assert ((np.abs(z + 1) < 1e-6) & (x > 0) & (y < 0)).sum() > 20
+
+
+def test_a_mesh_of_nothing_stands_in_where_cuts_leave_nothing(sampler):
+    sampler.request("ball", Wish(ball(), stand_in=(ALL,)))
+    made = results(sampler, 1)[0][1]
+    assert made.vertices.shape == (0, 3)
+    sampler.request("ball", Wish(ball(), channel="fractions", material="red", stand_in=(ALL,)))
+    assert results(sampler, 1)[0][1].vertices.shape == (0, 3)
+
+
+def test_whether_cuts_leave_anything_is_known_of_a_volume(sampler):
+    sampler.request("ball", Wish(ball(), resolution=32))
+    volume = results(sampler, 1)[0][1]
+    assert np.linalg.norm(volume.inside, axis=1).max() < 5
+    assert len(volume.inside) > 1000
+    for cuts, expected in (
+        ((), True), ((CORNER,), True), ((ALL,), False),
+        ((((1.0, 0, 0, -0.1),), ((-1.0, 0, 0, 0.2),)), False),  # x > 0.1 and x < 0.2
+        ((((1.0, 0, 0, -3.0),), ((-1.0, 0, 0, 0.2),)), True),
+    ):  # fmt: skip
+        assert preview_volume.is_left(sardf, volume.inside, cuts) == expected, cuts
+    sampler.request("ball", Wish(ball().replace('"solid": "ball"', '"solid": "ball", "sections": '
+                    '[{"remove": {"sphere": {"radius": 9}}}]'), resolution=32))  # fmt: skip
+    assert len(results(sampler, 1)[0][1].inside) == 0
 
 
 @pytest.fixture(scope="module")

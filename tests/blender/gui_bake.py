@@ -15,7 +15,7 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import gui_window
-from gui_window import TimeOut, addon, drive, result, screenshot, view
+from gui_window import TimeOut, addon, click, drive, open_tab, result, screenshot, view
 from installing import MODULE
 
 SCENE = sys.argv[-3]
@@ -27,13 +27,6 @@ drawn = {"panel": 0}
 
 def until(condition, what, limit=LIMIT):
     return gui_window.until(condition, what, limit)
-
-
-def click(x, y):
-    """A real click; Blender counts y from below, X from above."""
-    height = view()[0].height
-    command = ["xdotool", "mousemove", str(x), str(height - y), "click", "1"]
-    subprocess.run(command, check=True)
 
 
 def contents():
@@ -61,22 +54,6 @@ def redrawn():
     before = drawn["panel"]
     view()[1].tag_redraw()
     yield from until(lambda: drawn["panel"] > before, "the panel to be drawn")
-
-
-def open_tab():
-    """Open the sidebar and click down its column of tabs until ours is shown."""
-    _, area, regions = view()
-    area.spaces.active.show_region_ui = True
-    yield from until(lambda: regions["UI"].width > 50, "the sidebar to open")
-    right, top = regions["UI"].x + regions["UI"].width, regions["UI"].y + regions["UI"].height
-    for down in range(30, 500, 25):
-        click(right - 10, top - down)
-        end = time.monotonic() + 0.5
-        while drawn["panel"] == 0 and time.monotonic() < end:
-            yield
-        if drawn["panel"]:
-            return
-    raise TimeOut("no tab showed the panel")
 
 
 def button_height(x):
@@ -115,7 +92,7 @@ def scenario():
     settings.filepath = SCENE
     # Long enough to be interrupted: seconds.
     settings.resolution, settings.size = 256, "4096"
-    yield from open_tab()
+    yield from open_tab(lambda: drawn["panel"] > 0, LIMIT)
     yield from redrawn()
     screenshot("panel")
     yield from cancelled_bake()

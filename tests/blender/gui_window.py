@@ -54,6 +54,30 @@ def screenshot(name):
     subprocess.run(["import", "-window", "root", f"{FOLDER}/{name}.png"], check=True)
 
 
+def click(x, y):
+    """A real click; Blender counts y from below, X from above."""
+    height = view()[0].height
+    command = ["xdotool", "mousemove", str(x), str(height - y), "click", "1"]
+    subprocess.run(command, check=True)
+
+
+def open_tab(is_drawn, limit):
+    """Open the sidebar and click down its column of tabs until ours is shown: Blender 3.4 has no
+    other way to choose one."""
+    _, area, regions = view()
+    area.spaces.active.show_region_ui = True
+    yield from until(lambda: regions["UI"].width > 50, "the sidebar to open", limit)
+    right, top = regions["UI"].x + regions["UI"].width, regions["UI"].y + regions["UI"].height
+    for down in range(30, 500, 25):
+        click(right - 10, top - down)
+        end = time.monotonic() + 0.5
+        while not is_drawn() and time.monotonic() < end:
+            yield
+        if is_drawn():
+            return
+    raise TimeOut("no tab showed the panel")
+
+
 def drive(steps, tick):
     """Run the steps, one every `tick` seconds; end Blender after the last one, or with what went
     wrong."""

@@ -58,7 +58,7 @@ std::string cone_text(const Light& light) {
 }
 
 std::string ball_text(const Light& light, double scale, int samples) {
-  const double f = light.radius > 0 ? light.radius : point_fade * scale;
+  const double f = light.radius > 0 && light.soft_falloff ? light.radius : point_fade * scale;
   const std::string cone = light.type == Light::Type::spot ? cone_text(light) : "";
   return light_source(place_of(light), faded(light, light.power / (4 * pi * pi), f),
                       cone + fade_text(f) + disk_text(2 * light.radius, samples), light.shadow);

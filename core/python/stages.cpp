@@ -17,7 +17,6 @@ namespace sardf {
 
 namespace {
 
-namespace py = pybind11;
 using Samples = py::array_t<float, py::array::c_style | py::array::forcecast>;
 
 // The shares of the progress that end with reading, and with writing.

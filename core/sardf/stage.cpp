@@ -39,9 +39,9 @@ const std::vector<Number> numbers{{"power", &Light::power, -infinity, infinity},
                                   {"size_x", &Light::size_x, 0, infinity, true},
                                   {"size_y", &Light::size_y, 0, infinity, true}};
 const Names light_types{"point", "sun", "spot", "area"}, shapes{"rectangle", "ellipse"};
-const Names light_keys{"name",   "type",   "matrix_world", "color",      "power",
-                       "radius", "angle",  "spot_size",    "spot_blend", "shape",
-                       "size_x", "size_y", "shadow"};
+const Names light_keys{"name",   "type",      "matrix_world", "color",       "power",  "radius",
+                       "angle",  "spot_size", "spot_blend",   "shape",       "size_x", "size_y",
+                       "shadow", "tint",      "exposure",     "soft_falloff"};
 
 [[noreturn]] void fail(const std::string& text, const std::string& pointer) {
   throw Error(text, "", 0, pointer);
@@ -87,6 +87,11 @@ Matrix4 matrix_of(const Json& json, const std::string& at) {
   return out;
 }
 
+bool truth_of(const Json& json, const std::string& at) {
+  if (!json.is_boolean()) fail("expected true or false, found " + json.dump().substr(0, 40), at);
+  return json;
+}
+
 size_t word_of(const Json& json, const Names& accepted, const std::string& at) {
   const std::string word = json.is_string() ? json.get<std::string>() : json.dump().substr(0, 40);
   const auto found = std::find(accepted.begin(), accepted.end(), word);
@@ -111,9 +116,9 @@ Light light_of(const Json& json, const std::string& at) {
     light.matrix_world = matrix_of(json["matrix_world"], at + "/matrix_world");
   }
   if (json.contains("color")) light.color = numbers_of<3>(json["color"], at + "/color");
-  if (json.contains("shadow")) {
-    if (!json["shadow"].is_boolean()) fail("expected true or false", at + "/shadow");
-    light.shadow = json["shadow"];
+  if (json.contains("shadow")) light.shadow = truth_of(json["shadow"], at + "/shadow");
+  if (json.contains("soft_falloff")) {
+    light.soft_falloff = truth_of(json["soft_falloff"], at + "/soft_falloff");
   }
   for (const Number& number : numbers) {
     if (!json.contains(number.key)) continue;
@@ -125,6 +130,13 @@ Light light_of(const Json& json, const std::string& at) {
                (number.high < infinity ? " and at most " + Json(number.high).dump() : ""),
            place);
     }
+  }
+  if (json.contains("tint")) {
+    const Vec3 tint = numbers_of<3>(json["tint"], at + "/tint");
+    for (size_t i = 0; i < 3; ++i) light.color[i] *= tint[i];
+  }
+  if (json.contains("exposure")) {
+    light.power *= std::exp2(number_of(json["exposure"], at + "/exposure"));
   }
   return light;
 }
@@ -154,12 +166,19 @@ StagePart part_of_stage(const Json& json, const std::string& at, const std::stri
   return part;
 }
 
+Vec3 world_of(const Json& json) {
+  check_keys(json, {"color", "strength"}, "/world");
+  if (!json.contains("color")) fail("the world has no color", "/world");
+  const Vec3 color = numbers_of<3>(json["color"], "/world/color");
+  return (json.contains("strength") ? number_of(json["strength"], "/world/strength") : 1) * color;
+}
+
 Stage parsed(const Json& json, const std::string& file, const Progress& progress) {
   check_keys(json, {"camera", "world", "lights", "parts", "blender"}, "");
   Stage stage;
   if (!json.contains("camera")) fail("the stage has no camera", "");
   stage.camera = camera_from_text(json["camera"].dump());
-  if (json.contains("world")) stage.world = numbers_of<3>(json["world"], "/world");
+  if (json.contains("world")) stage.world = world_of(json["world"]);
   std::array<double, 3> blender{5, 0, 0};
   if (json.contains("blender")) blender = numbers_of<3>(json["blender"], "/blender");
   for (const char* list : {"lights", "parts"}) {

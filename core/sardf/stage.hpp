@@ -34,6 +34,7 @@ struct Light {
   Vec3 color{1, 1, 1};             ///< linear Rec.709
   double power = 10;               ///< W; of a sun W per square unit
   double radius = 0;               ///< of point and spot, in units; 0: hard shadows
+  bool soft_falloff = true;        ///< false: without the radius² in the denominator
   double angle = 0;                ///< of a sun: its disk's diameter as seen from here, radians
   double spot_size = 0.785398163;  ///< whole angle of the cone, radians, in (0, pi]
   /// Share of the cone that is blurred, in [0, 1]: where the cosine is by up to blend (1 - c) above
@@ -60,20 +61,20 @@ struct Stage {
 
 /// A stage from JSON text:
 ///
-///     {"camera": as camera_from_text reads it, "world": [r, g, b],
-///      "lights": [{"type": "point" | "sun" | "spot" | "area", "matrix_world", "color", "power",
-///      "radius",
-///                  "angle", "spot_size", "spot_blend", "shape": "rectangle" | "ellipse", "size_x",
-///                  "size_y", "shadow", "name"}],
+///     {"camera": as camera_from_text reads it, "world": {"color": [r, g, b], "strength"},
+///      "lights": [{"type": "point" | "sun" | "spot" | "area", "matrix_world", "color", "tint",
+///                  "power", "exposure", "radius", "soft_falloff", "angle", "spot_size",
+///                  "spot_blend", "shape": "rectangle" | "ellipse", "size_x", "size_y", "shadow",
+///                  "name"}],
 ///      "parts": [{"scene": a scene or the path of its file, "matrix_world"}],
 ///      "blender": [major, minor, patch]}
 ///
-/// Only camera and parts are needed. Paths are relative to the folder of `file`, which errors name.
-/// "blender" says whose lights these are: in 3.4, measured, an area light is weaker by pi/4 and a
-/// spot by the cosine of the angle from its axis; in 5.0 neither. The change is taken to be in 4.0.
-/// Progress: scenes that are solved for. Throws Error, with the pointer to what is wrong: a type, a
-/// number that is not finite or out of range, an unknown key, no part; as parse_scene does.
-/// Cancelled.
+/// Only camera and parts are needed. The colour of a light is color × tint, its power is power ×
+/// 2^exposure. Paths are relative to the folder of `file`, which errors name. "blender" says whose
+/// lights these are: in 3.4, measured, an area light is weaker by pi/4 and a spot by the cosine of
+/// the angle from its axis; in 5.0 neither. The change is taken to be in 4.0. Progress: scenes that
+/// are solved for. Throws Error, with the pointer to what is wrong: a type, a number that is not
+/// finite or out of range, an unknown key, no part; as parse_scene does. Cancelled.
 Stage stage_from_text(const std::string& text, const std::string& file = "",
                       const Progress& progress = {});
 

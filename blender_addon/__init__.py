@@ -10,8 +10,10 @@ picture      camera, lights and render settings
 headless commands    runs without a window: as a script, and as `blender -c sardf`
 arguments sources outputs    their options, what they read, and how files get their names
 properties operators piece_operator panel    the user interface for scene files, and the bake
+preferences  where POV-Ray is
 parts        parts modelled from Blender objects
 preview      parts shown in the viewport while they are made
+reference    the scene rendered in POV-Ray, and compared with Cycles
 """
 
 import importlib
@@ -28,6 +30,7 @@ bl_info = {
 
 
 MODULES = (  # in the order in which Blender must know them
+    "preferences",
     "properties",
     "parts.part_properties",
     "parts.part_objects",
@@ -47,6 +50,9 @@ MODULES = (  # in the order in which Blender must know them
     "preview.preview_panel",
     "preview.preview",
     "parts.part_preview",
+    "reference.reference_properties",
+    "reference.reference_operators",
+    "reference.reference_panel",
 )
 
 

@@ -167,6 +167,41 @@ def export(options):
     return [output]
 
 
+def reference(options):
+    """Render a .blend file's parts in POV-Ray and in Cycles and return the written files."""
+    import bpy
+
+    sardf, sources = load_core(), addon("sources")
+    compare, work = addon("reference.compare"), addon("reference.work")
+    signals = outputs.Signals()
+    sources.register()
+    if options.scene:
+        sources.open_file(options.scene)
+    settings = bpy.context.scene.sardf
+    settings.resolution, settings.sections = options.resolution, options.section
+    settings = bpy.context.scene.sardf_reference
+    settings.compare, settings.keep_cycles = True, False
+    settings.samples, settings.light_samples = options.samples, options.light_samples
+    workplace = outputs.make_workplace(options.output)
+    try:
+        order = compare.order_of(bpy.context, tuple(options.look), options.size)
+        made = work.make(sardf, order, progress=lambda share: not signals.name)
+        compare.place_baked(bpy.context, order, made)
+        for text in order.stage.warnings:
+            print(f"sardf: {text}")
+        for look in order.looks:
+            print(f"sardf: {compare.store(bpy.context, order, made, look)}")
+            compare.write(workplace, look, bpy.context.scene)
+        return outputs.publish(workplace, options.output)
+    except (compare.Unready, sardf.Error) as error:
+        raise Stop(WRONG_INPUT, str(error)) from error
+    except sardf.Cancelled:
+        signals.check()
+        raise
+    finally:
+        shutil.rmtree(workplace, ignore_errors=True)
+
+
 def main(words, command="render"):
     """Run with a list of command-line words; returns the exit code."""
     program = f"blender -c sardf {command}" if __package__ else "headless.py"
@@ -175,7 +210,7 @@ def main(words, command="render"):
         options.command, options.as_command = command, bool(__package__)
         if importlib.util.find_spec("bpy") is None:
             raise Stop(FAILED, "run this in Blender, or with a Python that has the bpy module")
-        for path in (export if command == "export" else run)(options):
+        for path in {"export": export, "reference": reference}.get(command, run)(options):
             print(f"sardf: wrote {path}")
         return DONE
     except Stop as stop:

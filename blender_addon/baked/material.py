@@ -140,6 +140,17 @@ def build_flat(image):
     return material
 
 
+def build_matte(image):
+    """A diffuse surface of the base colour: what it shows is light times the texture's value."""
+    tree, output, material = _bare("sardf matte")
+    node = _image_node(tree, "base_color", (-400, 0))
+    node.image = image
+    shader = tree.nodes.new("ShaderNodeBsdfDiffuse")
+    tree.links.new(node.outputs["Color"], shader.inputs["Color"])
+    tree.links.new(shader.outputs["BSDF"], output.inputs["Surface"])
+    return material
+
+
 def build_normals():
     """Emission of the world shading normal n as the colour n * 0.5 + 0.5."""
     tree, output, material = _bare("sardf normals")

@@ -38,7 +38,7 @@ class SARDF_OT_bake_pieces(bpy.types.Operator):
     def invoke(self, context, _event):
         if bpy.app.background:
             return self.execute(context)
-        if not self._begin(context):
+        if not self._begin(context) or not self._step(context):
             return {"CANCELLED"}
         manager = context.window_manager
         self._timer = manager.event_timer_add(operators.POLL_SECONDS, window=context.window)

@@ -15,6 +15,7 @@ OPERATIONS = ("union", "intersection", "difference")
 RULES = ("inverse_distance", "blend_between", "ramp", "partition")
 UNITS = ("um", "mm", "cm", "m", "in")
 NO_KIND = "none"
+HIDDEN = "sardf_hidden"  # custom property of a baked object: we hid it for the preview
 SHOWN = (  # of a part: (choice, title, tooltip, number)
     ("newer", "What Is Newer", "The preview, unless the baked object is up to date and visible", 0),
     ("preview", "Preview", "The preview; choosing it hides the baked object in viewports", 1),
@@ -43,10 +44,18 @@ def _changed(group, _context):
 
 
 def _shown_changed(settings, context):
+    """Hides the baked object for the preview, and shows it again; what the user hid stays hidden
+    until the baked object is asked for."""
     _changed(settings, context)
     baked = settings.baked
-    if settings.show != "newer" and baked is not None and baked.name in context.view_layer.objects:
-        baked.hide_set(settings.show == "preview")
+    if baked is None or baked.name not in context.view_layer.objects:
+        return
+    if settings.show == "preview" and not baked.hide_get():
+        baked.hide_set(True)
+        baked[HIDDEN] = True
+    elif settings.show == "baked" or (settings.show == "newer" and HIDDEN in baked):
+        baked.hide_set(False)
+        baked.pop(HIDDEN, None)
 
 
 def _group(name, properties):

@@ -45,7 +45,7 @@ def _about_baked(part, now):
         return ()
     if part_bake.mark_of(part) == now.mark:
         if part.sardf_part.show == "newer":
-            return ("the baked object is up to date: it is shown, the preview is not",)
+            return ("the baked object is up to date: it is shown in place of a preview",)
         return ("the baked object is up to date",)
     return ("the part was changed since it was baked",)
 

@@ -9,7 +9,8 @@ baked        a scene file's or a part's scene -> object with textures and fracti
 picture      camera, lights and render settings
 headless commands    runs without a window: as a script, and as `blender -c sardf`
 arguments sources outputs    their options, what they read, and how files get their names
-properties operators panel    the user interface for scene files, and the bake
+properties operators panel    the user interface for scene files
+bake_settings bake_plan bake_info bake_operator bake_panel    the bake of scene files and parts
 parts        parts modelled from Blender objects
 preview      parts shown in the viewport while they are made
 """
@@ -28,15 +29,19 @@ bl_info = {
 
 
 MODULES = (  # in the order in which Blender must know them
+    "bake_settings",
     "properties",
     "parts.part_properties",
     "parts.part_objects",
     "parts.part_status",
+    "bake_info",
+    "bake_operator",
     "operators",
     "parts.part_lists",
     "parts.part_operators",
     "panel",
     "parts.part_panel",
+    "bake_panel",
     "commands",
     "preview.preview_settings",
     "preview.preview_panel",

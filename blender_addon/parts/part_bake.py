@@ -9,16 +9,15 @@ works without a window, too.
 
 import dataclasses
 import uuid
+from pathlib import Path
 
 import bpy
 from mathutils import Matrix
 
 from .. import core
-from ..baked import assemble, job
+from ..baked import assemble, job, store
 from . import part_scene
 from .part_error import PartError
-
-KEEPS = "sardf image of "  # custom properties of a baked object, each with a channel's image
 
 
 def request_of(part, settings, depsgraph):
@@ -50,15 +49,7 @@ def find(key):
 
 def place(scene, part, made, built):
     """The mesh object of a baked part under its Empty: a new one, or the earlier one renewed."""
-    earlier = _baked(part)
-    if earlier is not None:
-        for key in [key for key in earlier.keys() if key.startswith(KEEPS)]:  # noqa: SIM118
-            del earlier[key]
-    item = assemble.place(scene, made, built, earlier or assemble.NEW)
-    for channel, image in built.items():
-        if image.use_fake_user:  # no material reads it: the object does, so that both go together
-            item[KEEPS + channel] = image
-            image.use_fake_user = False
+    item = assemble.place(scene, made, built, baked_of(part) or assemble.NEW)
     if item.parent != part:
         item.name = f"{part.name} baked"
         item.parent = part
@@ -77,14 +68,15 @@ def rebake_frames(context, part, frames, channels=job.CHANNELS):
         scene.frame_set(frame)
         part = find(key)
         request, _ = request_of(part, scene.sardf, context.evaluated_depsgraph_get())
-        request = dataclasses.replace(request, channels=tuple(channels))
+        textures = store.Store(Path(bpy.app.tempdir) / "sardf frame", replace=True)
+        request = dataclasses.replace(request, channels=tuple(channels), store=textures)
         made = job.make_part(sardf, request)
-        item = place(scene, part, made, assemble.build_images(made))
+        item = place(scene, part, made, assemble.build_images(sardf, made))
         context.view_layer.update()
         yield frame, item
 
 
-def _baked(part):
+def baked_of(part):
     """The object that an earlier bake of this very part made, or None.
 
     A copy of a part may still point to the original's.
@@ -97,5 +89,5 @@ def _baked(part):
 
 def _source(part):
     """The text that marks what was baked of a part."""
-    baked = _baked(part)
+    baked = baked_of(part)
     return baked[assemble.SOURCE] if baked is not None else f"sardf part {uuid.uuid4().hex}"

@@ -11,4 +11,5 @@ PYBIND11_MODULE(_core, m) {
   sardf::bind_meshes(m);
   sardf::bind_scenes(m);
   sardf::bind_volume_samples(m);
+  sardf::bind_baking(m);
 }

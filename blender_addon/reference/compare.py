@@ -2,13 +2,11 @@
 """From POV-Ray's pictures to images, numbers and a comparison with Cycles."""
 
 import json
-from pathlib import Path
 
 from .. import core, preferences
-from ..baked import images
+from ..baked import assemble
 from ..parts import part_bake
 from . import cycles, pictures, stage, work
-
 
 NUMBERS = ("intersection_over_union", "median", "quantile_99", "compared_pixels")
 
@@ -35,13 +33,11 @@ def order_of(context, looks=None, texels=0):
 
 
 def place_baked(context, order, made):
-    """Put what was baked meanwhile under its parts. Raises PartError."""
+    """Put what was baked meanwhile under its parts. Raises PartError and StoreError."""
+    sardf = core.load()
     for index, part in made.baked.items():
         parent = part_bake.find(order.stage.parts[index].key)
-        built = {
-            channel: images.build_packed(f"{part.name} {channel}", channel, values)
-            for channel, values in part.maps.items()
-        }
+        built = assemble.build_images(sardf, part)
         order.stage.parts[index].item = part_bake.place(context.scene, parent, part, built).name
     context.view_layer.update()
 
@@ -53,7 +49,9 @@ def store(context, order, made, look):
     said = [*order.stage.warnings, *made.sentences]
     settings.warnings = "\n".join(said)
     settings.compared = ""
-    reference = pictures.keep("reference", pictures.from_exr(made.pictures[look]), look)
+    reference = pictures.keep(
+        "reference", pictures.from_exr(made.pictures[look], "reference"), look
+    )
     if not order.bake:
         pictures.show(context, "reference")
         return f"{look}: rendered in POV-Ray"
@@ -65,7 +63,7 @@ def store(context, order, made, look):
         )
     except sardf.Error as error:  # an empty picture: the camera sees nothing
         raise Unready(f"the {look} pictures cannot be compared: {error}") from error
-    pictures.difference(numbers.pop("difference"), look)
+    pictures.difference(sardf, numbers.pop("difference"), look)
     settings.compared = look
     for name in NUMBERS:
         setattr(settings, name, numbers[name])
@@ -102,9 +100,9 @@ def _candidate(context, order, look):
         return last
     names = [part.item for part in order.stage.parts]
     try:
-        with pictures.exr_file() as path:
+        with pictures.exr_file("cycles") as path:
             cycles.picture(context, names, look, settings.samples, size, path)
-            content = Path(path).read_bytes()
+            content = path.read_bytes()
     except cycles.NoPicture as error:
         raise Unready(str(error)) from error
-    return pictures.keep("cycles", pictures.from_exr(content), look)
+    return pictures.keep("cycles", pictures.from_exr(content, "cycles"), look)

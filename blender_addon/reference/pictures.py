@@ -2,7 +2,6 @@
 """Pictures as images in the .blend: POV-Ray's, Cycles' and their difference."""
 
 import contextlib
-import os
 import tempfile
 from pathlib import Path
 
@@ -21,26 +20,17 @@ FACTOR = 16  # of the difference
 
 
 @contextlib.contextmanager
-def exr_file(content=None):
-    """The path of a temporary .exr file with some bytes in it."""
-    handle, path = tempfile.mkstemp(suffix=".exr", dir=bpy.app.tempdir)
-    os.close(handle)
-    try:
-        if content is not None:
-            Path(path).write_bytes(content)
-        yield path
-    finally:
-        Path(path).unlink(missing_ok=True)
+def exr_file(name):
+    """The path of an .exr file that may be written, and is gone afterwards."""
+    with tempfile.TemporaryDirectory(dir=bpy.app.tempdir or None) as folder:
+        yield Path(folder) / f"{name}.exr"
 
 
-def from_exr(content):
+def from_exr(content, kind):
     """A packed image of an EXR file's bytes: linear colour, and alpha 0 where nothing is."""
-    with exr_file(content) as path:
-        image = bpy.data.images.load(path)
-        images.set_colorspace(image, "base_color")
-        image.update()
-        images.pack(image, path)
-    return image
+    with exr_file(NAMES[kind]) as path:
+        path.write_bytes(content)
+        return images.load(path, NAMES[kind], is_color=True, packed=True)
 
 
 def keep(kind, image, look):
@@ -68,10 +58,12 @@ def array(image):
     return np.ascontiguousarray(pixels.reshape(height, width, 4)[::-1])
 
 
-def difference(values, look):
+def difference(sardf, values, look):
     """The image of an array (height, width, 3)."""
-    name = NAMES["difference"]
-    return keep("difference", images.build_packed(name, "base_color", values), look)
+    with exr_file(NAMES["difference"]) as path:
+        sardf.write_exr(path, values)
+        image = images.load(path, NAMES["difference"], is_color=True, packed=True)
+    return keep("difference", image, look)
 
 
 def show(context, kind):

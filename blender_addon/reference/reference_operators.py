@@ -7,6 +7,7 @@ from typing import ClassVar
 import bpy
 
 from .. import core
+from ..baked.store import StoreError
 from ..parts.part_error import PartError
 from . import compare, pictures, work
 
@@ -93,7 +94,7 @@ class SARDF_OT_reference(bpy.types.Operator):
             compare.place_baked(context, order, made)
             for look in order.looks:
                 self.report({"INFO"}, compare.store(context, order, made, look))
-        except (compare.Unready, PartError) as error:
+        except (compare.Unready, PartError, StoreError) as error:
             return self._fail(error)
         return {"FINISHED"}
 

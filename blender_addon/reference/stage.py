@@ -9,7 +9,7 @@ from pathlib import Path
 import bpy
 
 from .. import core
-from ..baked import assemble
+from ..baked import assemble, store
 from ..parts import part_bake, part_objects, part_scene
 from ..parts.part_error import PartError
 from ..picture import camera as picture_camera
@@ -165,11 +165,12 @@ def _parts(context, depsgraph, texels):
         warnings += problems
         if not settings.sections:
             document = document | {"sections": []}
-        baked = baked_of(part)
+        baked = part_bake.baked_of(part)
         request = None
         if baked is None:
             request, _ = part_bake.request_of(part, settings, depsgraph)
-            request = dataclasses.replace(request, size=texels or request.size)
+            textures = store.Store(Path(bpy.app.tempdir) / "sardf reference", part.name, True)
+            request = dataclasses.replace(request, size=texels or request.size, store=textures)
         matrix = _rows(part.evaluated_get(depsgraph))
         key, name = part_bake.key_of(part), baked and baked.name
         made.append(Part(part.name, document, matrix, key, name, request))
@@ -190,14 +191,6 @@ def _parts(context, depsgraph, texels):
             "there is nothing to draw: the scene has no part, and nothing in it was baked"
         )
     return made, warnings
-
-
-def baked_of(part):
-    """The mesh object that a bake left under a part, or None."""
-    return next(
-        (i for i in part.children if i.type == "MESH" and assemble.SOURCE in i and i.users_scene),
-        None,
-    )
 
 
 def _others(context, parts):

@@ -53,6 +53,10 @@ def make(sardf, order, progress=None):
             begin = 1.0 - start + place * share
             between = _between(progress, begin, begin + share)
             made.baked[index] = job.make_part(sardf, part.request, between)
+    except BaseException:
+        for part in made.baked.values():
+            part.store.discard()
+        raise
     finally:
         shutil.rmtree(folder, ignore_errors=True)
     return made

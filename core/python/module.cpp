@@ -13,4 +13,5 @@ PYBIND11_MODULE(_core, m) {
   sardf::bind_scenes(m);
   sardf::bind_volume_samples(m);
   sardf::bind_stages(m);
+  sardf::bind_baking(m);
 }

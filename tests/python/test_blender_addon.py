@@ -22,6 +22,12 @@ from blender_runs import (
 )
 from repository import ROOT
 
+sys.path.insert(0, str(ROOT))
+try:
+    from blender_addon.baked import job
+finally:
+    sys.path.remove(str(ROOT))
+
 
 @pytest.mark.parametrize("version", VERSIONS)
 def test_installed_zip_bakes_rebakes_and_renders(version, zips, tmp_path):
@@ -111,20 +117,16 @@ def slow_core(entered):
             time.sleep(0)
         raise Cancelled
 
-    scene = SimpleNamespace(mesh=mesh, attributes={})
-    return SimpleNamespace(load=lambda path: scene, Cancelled=Cancelled)
+    channels = dict.fromkeys(job.CHANNELS, "")
+    scene = SimpleNamespace(mesh=mesh, attributes={}, channels=lambda: channels)
+    return SimpleNamespace(load=lambda path, progress: scene, Cancelled=Cancelled)
 
 
 def test_job_stops_when_cancelled_and_keeps_errors():
-    sys.path.insert(0, str(ROOT))
-    try:
-        from blender_addon.baked import job
-    finally:
-        sys.path.remove(str(ROOT))
     entered = threading.Event()
     running = job.Job(slow_core(entered), job.Request("part.json"))
     assert entered.wait(10)
-    assert running.share == 0.5 * job.MESH_SHARE
+    assert running.share == pytest.approx(0.5 * job.SHARES[0] / sum(job.SHARES))
     begun = time.monotonic()
     running.cancel()
     while running.running:

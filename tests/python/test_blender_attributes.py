@@ -130,7 +130,9 @@ def test_baking_again_changes_the_attribute_and_keeps_the_rest(version, tmp_path
     assert (first["attribute"], second["attribute"]) == ("along_x", "around")
     assert [s["strength"] for s in (first, second, again)] == pytest.approx([0.8, 0.3, 0.8])
     assert first["linked"] == second["linked"] == again["linked"] == [True, True]
-    assert first["nodes"] == second["nodes"] == again["nodes"] == plain["nodes"] + 4
+    assert (
+        first["nodes"] == second["nodes"] == again["nodes"] == plain["nodes"] + 5
+    )  # and their frame
     assert plain["linked"] == [False, False]
     assert plain["anisotropic"] == 0
     assert ended == plain

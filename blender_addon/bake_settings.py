@@ -7,6 +7,8 @@ from .baked import job
 
 ATLAS, EXISTING, SMART = "ATLAS", "EXISTING", "SMART"
 PACKED, FOLDER = "PACKED", "FOLDER"
+# What a path needs so that Blender takes "//" without a warning; earlier ones do not know the word.
+MAY_BE_RELATIVE = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (5, 0, 0) else set()
 SIZES = ("256", "512", "1024", "2048", "4096", "8192")
 
 
@@ -87,6 +89,7 @@ class BakeSettings:
         name="Folder",
         description="Where the textures are written, as NAME_channel.exr",
         subtype="DIR_PATH",
+        options=MAY_BE_RELATIVE,
         default="//textures",
     )
     replace_files: bpy.props.BoolProperty(

@@ -76,6 +76,7 @@ class SardfSettings(bake_settings.BakeSettings, bpy.types.PropertyGroup):
         name="Scene File",
         description="The sardf scene file to mesh, bake and render",
         subtype="FILE_PATH",
+        options=bake_settings.MAY_BE_RELATIVE,
         update=_filepath_changed,
     )
     sections: bpy.props.BoolProperty(

@@ -62,8 +62,9 @@ def place(scene, part, built, earlier=None, layer=mesh_data.LAYER):
             old_mesh = item.data
             for each in filter(None, old_mesh.materials):
                 mesh.materials.append(each)
-    item[SOURCE] = part.source
-    item[DENSITY] = part.texels_per_unit
+    if not part.given or SOURCE in item:  # another object is the user's: no bake may renew it
+        item[SOURCE] = part.source
+        item[DENSITY] = part.texels_per_unit
     mesh_data.forget_attributes(mesh)
     names = mesh_data.set_fractions(mesh, part.fractions, part.scene.materials)
     made = mesh_data.set_attributes(mesh, part.attributes)

@@ -32,6 +32,8 @@ class Store:
 
     def open(self):
         """Make the hidden folder. Raises StoreError."""
+        if self.folder.is_file():
+            raise StoreError(f"{self.folder} is a file; textures need a folder")
         above = [self.folder, *self.folder.parents]
         self._made = next((each for each in reversed(above) if not each.exists()), None)
         try:

@@ -61,6 +61,7 @@ def scenario():
     yield from preview_of_it()
     yield from cut_open()
     yield from baked()
+    yield from compared()
 
 
 def first_part():
@@ -113,6 +114,29 @@ def baked():
     shading.type, shading.light, shading.color_type = "SOLID", "STUDIO", "TEXTURE"
     yield from settled()
     screenshot("tour_4_bake")
+
+
+def compared():
+    """POV-Ray's picture of the very formula, and how far Cycles' picture of the bake is from it."""
+    scene = bpy.context.scene
+    scene.sardf_preview.enabled = False
+    scene.render.resolution_x, scene.render.resolution_y = 480, 360
+    with place():
+        bpy.ops.sardf.reference("EXEC_DEFAULT")
+        bpy.ops.screen.area_split(direction="VERTICAL", factor=0.5)
+    window = bpy.context.window_manager.windows[0]
+    areas = [area for area in window.screen.areas if area.type == "VIEW_3D"]
+    editor = min(areas, key=lambda area: area.x)
+    editor.type = "IMAGE_EDITOR"
+    yield from redrawn()
+    pictures = addon("reference.pictures")
+    editor.spaces.active.image = pictures.find("reference")
+    with bpy.context.temp_override(window=window, area=editor, region=editor.regions[-1]):
+        bpy.ops.image.view_all()
+    yield from redrawn()
+    screenshot("tour_5_reference")
+    settings = scene.sardf_reference
+    result["reference"] = [settings.intersection_over_union, settings.median, settings.quantile_99]
 
 
 bpy.context.preferences.view.show_splash = False

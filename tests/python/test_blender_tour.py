@@ -27,6 +27,9 @@ def test_every_step_of_the_tour_works(window):
     assert window["part"] == ["union", "difference"]
     assert window["materials"] == ["lining", "body"]
     assert window["faces"] > 1000
+    overlap, median, _ = window["reference"]
+    assert overlap >= 0.999
+    assert median <= 2  # of 255
 
 
 def small(path):

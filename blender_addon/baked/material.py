@@ -142,19 +142,15 @@ def _tangent(tree, attribute):
 def build_flat(image):
     """Emission of the base colour alone: what the picture shows is the texture's value."""
     tree, output, material = _bare("sardf flat")
-    node = tree.nodes.new("ShaderNodeTexImage")
-    node.location, node.extension, node.image = (-400, 0), "EXTEND", image
-    tree.links.new(_emission(tree, node.outputs["Color"]), output.inputs["Surface"])
+    tree.links.new(_emission(tree, _texture(tree, image)), output.inputs["Surface"])
     return material
 
 
 def build_matte(image):
     """A diffuse surface of the base colour: what it shows is light times the texture's value."""
     tree, output, material = _bare("sardf matte")
-    node = _image_node(tree, "base_color", (-400, 0))
-    node.image = image
     shader = tree.nodes.new("ShaderNodeBsdfDiffuse")
-    tree.links.new(node.outputs["Color"], shader.inputs["Color"])
+    tree.links.new(_texture(tree, image), shader.inputs["Color"])
     tree.links.new(shader.outputs["BSDF"], output.inputs["Surface"])
     return material
 
@@ -176,6 +172,12 @@ def _bare(name):
     tree = use_nodes(material)
     tree.nodes.clear()
     return tree, tree.nodes.new("ShaderNodeOutputMaterial"), material
+
+
+def _texture(tree, image):
+    node = tree.nodes.new("ShaderNodeTexImage")
+    node.location, node.extension, node.image = (-400, 0), "EXTEND", image
+    return node.outputs["Color"]
 
 
 def _emission(tree, color):

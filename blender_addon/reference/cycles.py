@@ -7,7 +7,7 @@ from pathlib import Path
 
 import bpy
 
-from ..baked import assemble, material
+from ..baked import assemble, groups, material
 from ..picture import render
 from . import lights
 
@@ -46,7 +46,7 @@ def base_color(item):
     """The image that a bake made of an object's base colour. Raises NoPicture."""
     for slot in item.material_slots:
         nodes = slot.material.node_tree.nodes if slot.material and slot.material.node_tree else {}
-        node = nodes.get(material.node_name("base_color"))
+        node = nodes.get(groups.node_name("base_color"))
         if node is not None and node.image is not None:
             return node.image
     source = item[assemble.SOURCE]

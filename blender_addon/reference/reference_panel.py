@@ -2,6 +2,7 @@
 """The panel "Reference" in the sidebars of the 3-D viewport and of the Image Editor."""
 
 import textwrap
+from typing import ClassVar
 
 import bpy
 
@@ -14,7 +15,6 @@ class _Panel:
     bl_label = "Reference"
     bl_region_type = "UI"
     bl_category = "sardf"
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
         settings = context.scene.sardf_reference
@@ -64,6 +64,8 @@ class _Panel:
 class SARDF_PT_reference(_Panel, bpy.types.Panel):
     bl_idname = "SARDF_PT_reference"
     bl_space_type = "VIEW_3D"
+    bl_options: ClassVar[set] = {"DEFAULT_CLOSED"}
+    bl_order = 3
 
 
 class SARDF_PT_reference_image(_Panel, bpy.types.Panel):

@@ -92,7 +92,7 @@ def scenario():
     settings.filepath = SCENE
     # Long enough to be interrupted: seconds.
     settings.resolution, settings.size = 256, "4096"
-    yield from open_tab(lambda: drawn["panel"] > 0, LIMIT)
+    yield from open_tab(view()[1], lambda: drawn["panel"] > 0, LIMIT)
     yield from redrawn()
     screenshot("panel")
     yield from cancelled_bake()

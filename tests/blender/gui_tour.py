@@ -16,7 +16,7 @@ from gui_window import addon, drive, open_tab, result, screenshot, until, view
 from installing import MODULE
 
 LIMIT = 120.0  # seconds to wait for anything at most; llvmpipe on a busy machine is slow
-drawn = {"panel": 0}
+drawn = {"panel": 0, "reference": 0}
 
 
 def place():
@@ -24,15 +24,20 @@ def place():
     return bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"])
 
 
-def count_panel_draws():
-    panel = addon("parts.part_panel").SARDF_PT_part
-    original = panel.draw_part
+def count_draws():
+    part = addon("parts.part_panel").SARDF_PT_part
+    reference = addon("reference.reference_panel").SARDF_PT_reference_image
+    draw_part, draw = part.draw_part, reference.draw
 
-    def draw_part(self, context, part):
-        original(self, context, part)
+    def counted_part(self, context, shown):
+        draw_part(self, context, shown)
         drawn["panel"] += 1
 
-    panel.draw_part = draw_part
+    def counted(self, context):
+        draw(self, context)
+        drawn["reference"] += 1
+
+    part.draw_part, reference.draw = counted_part, counted
 
 
 def redrawn(seconds=0.6):
@@ -56,7 +61,7 @@ def scenario():
     bpy.ops.preferences.addon_enable(module=MODULE)
     bpy.context.preferences.view.smooth_view = 0
     bpy.data.objects.remove(bpy.data.objects["Cube"])
-    count_panel_draws()
+    count_draws()
     yield from first_part()
     yield from preview_of_it()
     yield from cut_open()
@@ -82,7 +87,7 @@ def first_part():
     space.region_3d.view_perspective = "PERSP"
     space.region_3d.view_location = (0, 0, 0)
     space.region_3d.view_distance = 8
-    yield from open_tab(lambda: drawn["panel"] > 0, LIMIT)
+    yield from open_tab(view()[1], lambda: drawn["panel"] > 0, LIMIT)
     yield from redrawn()
     screenshot("tour_1_part")
     result["part"] = [entry.operation for entry in part.sardf_part.entries]
@@ -124,14 +129,16 @@ def compared():
     with place():
         bpy.ops.sardf.reference("EXEC_DEFAULT")
         bpy.ops.screen.area_split(direction="VERTICAL", factor=0.5)
+    yield from redrawn()
     window = bpy.context.window_manager.windows[0]
     areas = [area for area in window.screen.areas if area.type == "VIEW_3D"]
     editor = min(areas, key=lambda area: area.x)
     editor.type = "IMAGE_EDITOR"
     yield from redrawn()
-    pictures = addon("reference.pictures")
-    editor.spaces.active.image = pictures.find("reference")
-    with bpy.context.temp_override(window=window, area=editor, region=editor.regions[-1]):
+    yield from open_tab(editor, lambda: drawn["reference"] > 0, LIMIT)
+    editor.spaces.active.image = addon("reference.pictures").find("reference")
+    regions = {region.type: region for region in editor.regions}
+    with bpy.context.temp_override(window=window, area=editor, region=regions["WINDOW"]):
         bpy.ops.image.view_all()
     yield from redrawn()
     screenshot("tour_5_reference")

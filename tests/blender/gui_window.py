@@ -61,13 +61,13 @@ def click(x, y):
     subprocess.run(command, check=True)
 
 
-def open_tab(is_drawn, limit):
-    """Open the sidebar and click down its column of tabs until ours is shown: Blender 3.4 has no
-    other way to choose one."""
-    _, area, regions = view()
+def open_tab(area, is_drawn, limit):
+    """Open an area's sidebar and click down its column of tabs until ours is shown: Blender 3.4 has
+    no other way to choose one."""
     area.spaces.active.show_region_ui = True
-    yield from until(lambda: regions["UI"].width > 50, "the sidebar to open", limit)
-    right, top = regions["UI"].x + regions["UI"].width, regions["UI"].y + regions["UI"].height
+    sidebar = next(region for region in area.regions if region.type == "UI")
+    yield from until(lambda: sidebar.width > 50, "the sidebar to open", limit)
+    right, top = sidebar.x + sidebar.width, sidebar.y + sidebar.height
     for down in range(30, 500, 25):
         click(right - 10, top - down)
         end = time.monotonic() + 0.5
@@ -75,6 +75,7 @@ def open_tab(is_drawn, limit):
             yield
         if is_drawn():
             return
+    screenshot(f"{Path(RESULT).stem}_time_out")
     raise TimeOut("no tab showed the panel")
 
 

@@ -9,7 +9,6 @@ from ..baked import images
 from ..parts import part_bake
 from . import cycles, pictures, stage, work
 
-
 NUMBERS = ("intersection_over_union", "median", "quantile_99", "compared_pixels")
 
 

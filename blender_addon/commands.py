@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`blender -c sardf bake|render|export|reference`, in Blender 4.2 and later, where the add-on is
-enabled.
+"""`blender -c sardf bake|render|export|reference`, in Blender 4.2 and later, with us enabled.
 
     blender -c sardf render scenes/lined_bore.json -o OUT
     blender part.blend -c sardf export -o part.json        (the part of the opened file)
@@ -11,7 +10,7 @@ The work is that of headless.py, whose options and exit codes these are.
 import bpy
 
 NAME = "sardf"
-USAGE = """usage: blender [FILE.blend] -c sardf COMMAND [SCENE] -o OUT [options]
+USAGE = """usage: blender [FILE.blend] -c sardf bake|render|export|reference [SCENE] -o OUT ...
 
   bake       a folder with part.blend and its textures
   render     the same, and pictures

@@ -2,6 +2,7 @@
 """Baking a part in the pieces that its sections cut it into."""
 
 import time
+import traceback
 from typing import ClassVar
 
 import bpy
@@ -87,8 +88,10 @@ class SARDF_OT_bake_pieces(bpy.types.Operator):
             self._stage = next(self._steps)
         except StopIteration:
             return False
-        except (PartError, self._sardf.Error) as error:
+        except Exception as error:
             self._drop()
+            if not isinstance(error, (PartError, self._sardf.Error)):
+                traceback.print_exception(error)  # ours to mend: show where
             self.report({"ERROR"}, str(error))
             return False
         finally:

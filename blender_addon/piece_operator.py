@@ -3,6 +3,7 @@
 
 import dataclasses
 import time
+import traceback
 from typing import ClassVar
 
 import bpy
@@ -102,8 +103,10 @@ class SARDF_OT_bake_pieces(bpy.types.Operator):
             self._stage = next(self._steps)
         except StopIteration:
             return False
-        except bake_plan.expected() as error:
+        except Exception as error:
             self._drop()
+            if not isinstance(error, bake_plan.expected()):
+                traceback.print_exception(error)  # ours to mend: show where
             self.report({"ERROR"}, str(error))
             return False
         finally:

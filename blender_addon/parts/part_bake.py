@@ -105,9 +105,11 @@ def mark_of(part):
 
 
 def is_seen(part):
-    """Whether the part's baked object is visible."""
+    """Whether the part's baked object is visible, and stands where the part does."""
     item = baked_of(part)
-    return item is not None and item.visible_get()
+    if item is None or not item.visible_get():
+        return False
+    return item.matrix_basis == item.matrix_parent_inverse == Matrix.Identity(4)
 
 
 def rebake_frames(context, part, frames, channels=job.CHANNELS):

@@ -26,6 +26,7 @@ class Now:
 
     def __init__(self, part, depsgraph):
         self.reading = self.error = None
+        self.count = _count(depsgraph)
         try:
             self.reading = part_scene.read(part, depsgraph)
         except PartError as error:
@@ -50,9 +51,14 @@ def mark_of(scene):
 def now(part, depsgraph):
     """The Now of a part; it may be kept until something changes."""
     key = part.name_full
-    if key not in _known:
+    # Objects that come or go may be told as a change of the scene alone.
+    if key not in _known or _known[key].count != _count(depsgraph):
         _known[key] = Now(part, depsgraph)
     return _known[key]
+
+
+def _count(depsgraph):
+    return len(depsgraph.scene.original.objects)
 
 
 def forget():

@@ -27,7 +27,7 @@ def from_parts(scene, depsgraph):
 def _source(part, depsgraph):
     """(scene text, cuts) of a part; (what is wrong with it, no cuts); (None, no cuts) where its
     baked object is to be seen instead."""
-    if part.sardf_part.show == "baked":
+    if part.sardf_part.show == "baked" and part_bake.is_baked(part):
         return None, ()
     count = len(part.sardf_part.entries)
     if count > part_status.MOST_ENTRIES:

@@ -101,11 +101,16 @@ def draw(context, settings, preview):
 
 
 def messages(preview):
-    """What is wrong, one line each."""
+    """What is wrong, or else what there is to say, one line each."""
     found = [preview.error] if preview.error else []
     for part in preview.parts.values():
         found += (part.error or part.note).splitlines()[:3]
     return found
+
+
+def is_wrong(preview):
+    """Whether anything is wrong, so that what is seen is not what there is."""
+    return bool(preview.error) or any(part.error for part in preview.parts.values())
 
 
 def _add_swatches(sheet, parts, y):

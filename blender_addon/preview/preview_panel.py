@@ -21,11 +21,11 @@ class SARDF_OT_preview_update(bpy.types.Operator):
 
     def execute(self, _context):
         preview.update_now()
-        wrong = preview_legend.messages(preview.CURRENT)
-        if wrong:
-            self.report({"ERROR"}, "; ".join(wrong))
-            return {"CANCELLED"}
-        return {"FINISHED"}
+        said = "; ".join(preview_legend.messages(preview.CURRENT))
+        is_wrong = preview_legend.is_wrong(preview.CURRENT)
+        if said:
+            self.report({"ERROR"} if is_wrong else {"WARNING"}, said)
+        return {"CANCELLED"} if is_wrong else {"FINISHED"}
 
 
 class SARDF_PT_preview(bpy.types.Panel):

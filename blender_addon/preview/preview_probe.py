@@ -66,7 +66,7 @@ class SARDF_OT_probe(bpy.types.Operator):
                 x, y = event.mouse_x - region.x, event.mouse_y - region.y
                 if region.type == "WINDOW" and 0 <= x < region.width and 0 <= y < region.height:
                     self._region, self.at = region.as_pointer(), (x, y)
-                    self.lines = read(region, area.spaces.active.region_3d, (x, y), context.scene)
+                    self.lines = read(region, area.spaces.active.region_3d, (x, y))
             area.tag_redraw()
 
     def _draw(self, context):

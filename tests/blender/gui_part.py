@@ -24,8 +24,10 @@ result["drawn"] = {}
 
 def watch_panels():
     panel = importlib.import_module("sardf_blender.parts.part_panel")
-    panel._Panel.bl_category = "Item"
-    for cls in panel.CLASSES:
+    sections = importlib.import_module("sardf_blender.parts.part_section_panel")
+    panel._Panel.bl_category = sections.SARDF_PT_section_object.bl_category = "Item"
+    sections.SARDF_PT_sections.bl_options = set()  # open
+    for cls in (*panel.CLASSES, *sections.CLASSES):
         watch(cls, "draw_item" if issubclass(cls, bpy.types.UIList) else "draw")
 
 
@@ -77,9 +79,16 @@ def scenario():
         bpy.ops.view3d.view_all()
         part = bpy.context.active_object
         part.sardf_part.sections.add().name = "no object"
+        bpy.ops.sardf.section_add(kind="box", everywhere=True)
+        bpy.context.view_layer.objects.active = part
+        bpy.ops.sardf.section_add(kind="plane")
     area.tag_redraw()
     yield from until_drawn("SARDF_PT_part", "SARDF_PT_materials", "SARDF_PT_features",
-                           "SARDF_UL_entries", "SARDF_UL_materials", "SARDF_UL_named")  # fmt: skip
+                           "SARDF_UL_entries", "SARDF_UL_materials", "SARDF_UL_named",
+                           "SARDF_PT_sections", "SARDF_PT_section_object")  # fmt: skip
+    end = time.monotonic() + 1
+    yield from until(lambda: time.monotonic() > end, "a second", LIMIT)
+    screenshot("part_sections")
     for kind in ("box", "cylinder", "formula"):  # the parameters of each in the panel
         with bpy.context.temp_override(**place):
             bpy.context.view_layer.objects.active = part

@@ -130,12 +130,22 @@ def plane_moves():
         points = [(x, y, z) for x in GRID for z in GRID if Vector((x, y, z)).length < 4.8]
         result["planes"][name] = [[p, pixel(p)] for p in points]
         result["seconds"] = time.monotonic() - begun
+        result["probed"] = probed((1, y, 0.5))
     result["sampled again"] = preview.CURRENT.parts[part().name].wish is not wish
     plane.location.y = 50
     yield from settled()
     screenshot("section_nothing")
     result["nothing"] = [pixel((0, 0, 0)), preview.CURRENT.parts[part().name].note]
     remove(plane)
+
+
+def probed(point):
+    """What the probe says of the pixel that a point is seen at."""
+    from sardf_blender.preview import preview_probe
+
+    _, area, regions = view()
+    region, view_3d = regions["WINDOW"], area.spaces.active.region_3d
+    return preview_probe.read(region, view_3d, location_3d_to_region_2d(region, view_3d, point))
 
 
 def remove(item):
@@ -213,9 +223,9 @@ def apart():
     items = [item for item in part().children if "sardf_source" in item]
     result["pieces"] = {item.name: list(item.matrix_world.translation) for item in items}
     result["previewed"] = part().name in shown()
-    view()[1].spaces.active.shading.type = "MATERIAL"
-    end = time.monotonic() + 4
-    yield from until(lambda: time.monotonic() > end, "the material view")
+    view()[1].spaces.active.shading.color_type = "TEXTURE"
+    end = time.monotonic() + 1
+    yield from until(lambda: time.monotonic() > end, "a second")
     screenshot("section_pieces")
     plane.location.y = 1
     yield from until(lambda: part().name in shown(), "the preview of the changed part")

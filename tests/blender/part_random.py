@@ -27,7 +27,7 @@ class Work:
             self.done[name] += 1
         except RuntimeError as error:  # an operator's report is one line that names the cause
             text = str(error).strip()
-            refused = "poll() failed" in text and name in ("undo", "redo", "bake")
+            refused = "poll() failed" in text and name in ("undo", "redo", "bake", "bake_pieces")
             if not (text.startswith("Error: ") or refused) or "Traceback" in text:
                 self.unexpected.append(f"{name}: {text}")
         except part_scene.PartError:
@@ -100,6 +100,29 @@ def edit_entry(work):
         entry.name = work.pick(("one", "two", "x", "größe", ""))
 
 
+def add_section(work):
+    work.part()
+    everywhere = work.pick((True, False, False))
+    bpy.ops.sardf.section_add(kind=work.pick(("plane", "box")), everywhere=everywhere)
+    bpy.context.active_object.location = [work.number() for _ in range(3)]
+
+
+def edit_section(work):
+    part = work.part()
+    section = work.pick(part.sardf_part.sections) if part else None
+    if section is not None:
+        section.mute = work.pick((True, False, False))
+        section.operation = work.pick(("union", "intersection"))
+        section.keep = work.pick(("", "", "nothing of that name"))
+        part.sardf_part.show = work.pick(("newer", "preview", "baked"))
+
+
+def bake_pieces(work):
+    work.part()
+    bpy.context.scene.sardf.resolution, bpy.context.scene.sardf.size = 4, "256"
+    bpy.ops.sardf.bake_pieces()
+
+
 def preset(work):
     work.part()
     bpy.ops.sardf.preset(choice=work.pick(part_presets.PRESETS), depth=work.number(0.1))
@@ -158,7 +181,8 @@ def export_and_import(work):
 
 STEPS = {
     each.__name__: each
-    for each in (add, new_part, move, edit_list, edit_entry, preset, bake, read, undo, redo, copy,
+    for each in (add, new_part, move, edit_list, edit_entry, add_section, edit_section, bake_pieces,
+                 preset, bake, read, undo, redo, copy,
                  delete, remove_part, save_and_load, export_and_import)
 }  # fmt: skip
 

@@ -186,7 +186,7 @@ def nothing_left(part, _folder):
     plane.location.y = 50
     bpy.context.view_layer.update()
     part.sardf_part.show = "preview"
-    preview.update_now()
+    updated = list(bpy.ops.sardf.preview_update())  # a message is no error
     said = {key: [of.error, of.note] for key, of in preview.CURRENT.parts.items()}
     part.sardf_part.show = "newer"
     second = run(bpy.ops.sardf.bake, part)
@@ -195,7 +195,7 @@ def nothing_left(part, _folder):
     frames = [len(i.data.vertices) for _, i in part_bake.rebake_frames(bpy.context, part, (1,))]
     bpy.context.scene.sardf_preview.enabled = False
     preview.collect()
-    return {"ends": [first, second], "full": full, "empty": empty, "frames": frames,
+    return {"ends": [first, second, updated], "full": full, "empty": empty, "frames": frames,
             "said": said, "kept": item.data.materials[0] == material}  # fmt: skip
 
 
@@ -307,6 +307,13 @@ def choice(part, _folder):
     part.sardf_part.show = "baked"
     plane.location.y = -1
     made["baked, though changed"] = shown(part) is not None
+    plane.location.y = 0
+    part.sardf_part.show = "newer"
+    baked.location.z = 9
+    made["baked stands elsewhere"] = shown(part) is not None
+    part.sardf_part.show = "baked"
+    bpy.data.objects.remove(baked)
+    made["baked is gone"] = shown(part) is not None
     return made
 
 

@@ -44,7 +44,7 @@ def main(zip_file, scene_file, result_file):
     bpy.ops.wm.read_factory_settings(use_empty=True)
     install(zip_file)
     module = MODULE
-    preview = importlib.import_module(f"{module}.preview")
+    preview = importlib.import_module(f"{module}.preview.preview")
     result = {"before": contents()}
     bpy.context.scene.sardf.filepath = scene_file
     settings = bpy.context.scene.sardf_preview

@@ -8,7 +8,8 @@ from repository import ROOT
 
 LINED_BORE = ROOT / "scenes/lined_bore.json"
 DRAWN = {"SARDF_PT_part", "SARDF_PT_materials", "SARDF_PT_features", "SARDF_UL_entries",
-         "SARDF_UL_materials", "SARDF_UL_named", "SARDF_MT_add"}  # fmt: skip
+         "SARDF_UL_materials", "SARDF_UL_named", "SARDF_MT_add", "SARDF_PT_sections",
+         "SARDF_PT_section_object"}  # fmt: skip
 
 
 def test_panels_and_menu_of_a_part_are_drawn(tmp_path):

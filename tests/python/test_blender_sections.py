@@ -106,7 +106,7 @@ def test_pieces_are_moved_by_the_spreads_of_their_sections(found):
 
 def test_where_nothing_is_left_a_message_says_so(found):
     case = found["nothing_left"]
-    assert case["ends"] == [["FINISHED"], ["FINISHED"]]
+    assert case["ends"] == [["FINISHED"]] * 3
     assert case["full"] > 500
     assert case["empty"] == [0, True]
     assert case["frames"] == [case["full"]]
@@ -161,6 +161,8 @@ def test_of_preview_and_baked_object_one_is_seen(found):
     assert case["newer"] == case["baked"] == [False, False]
     assert case["still hidden by hand"] is True
     assert case["baked, though changed"] is False
+    assert case["baked stands elsewhere"] is True
+    assert case["baked is gone"] is True
 
 
 def test_sections_of_a_file_are_objects(found):

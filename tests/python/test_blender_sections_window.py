@@ -1,5 +1,6 @@
 """Section objects moved in a window of Blender 3.4.1: the cut in the preview follows."""
 
+import json
 import subprocess
 
 import numpy as np
@@ -76,6 +77,13 @@ def test_the_cut_follows_the_plane_and_shows_the_colours_inside(window):
     assert np.median(errors(names[0], third)) > 4
     assert not window["sampled again"]
     print(f"seen {window['seconds']:.2f} s after the plane was moved, with two redraws")
+
+
+def test_the_probe_reads_on_the_cut(window):
+    place, _, red, _ = window["probed"]
+    assert json.loads("[" + place[1 : place.index(")")] + "]") == pytest.approx([1, 3, 0.5])
+    expected = (6 + 3 - 0.5) / (6 + 3 - 0.5 + 8 - 1 + 0.5)
+    assert float(red.split()[1]) == pytest.approx(100 * expected, abs=0.1)
 
 
 def test_where_the_plane_takes_everything_a_message_says_so(window):

@@ -69,7 +69,7 @@ class BakeSettings:
         poll=_is_mesh,
     )
     exact_shading: bpy.props.BoolProperty(
-        name="Exact in Cycles (OSL)",
+        name="Exact (OSL)",
         description=(
             "Also compute the materials exactly where a ray hits, by a shader in the Open Shading "
             "Language; a switch in the material goes back to the textures. Cycles on the CPU only"

@@ -102,9 +102,12 @@ def _text(tree, content):
 
 
 def _compile(script):
-    """Give the node the shader's sockets. Cycles does so itself when it is the scene's engine."""
+    """Give the node the shader's sockets, where Cycles is not the scene's engine and did so."""
+    if script.outputs:
+        return
     try:
         from cycles import osl
-    except ImportError:  # without Cycles nothing could run it
+
+        osl.update_script_node(script, lambda kind, text: print("sardf:", *kind, text))
+    except ImportError:  # a Blender without Cycles or its compiler of shaders: nothing can run it
         return
-    osl.update_script_node(script, lambda kind, text: print("sardf:", *kind, text))

@@ -144,7 +144,7 @@ void add_cells(const Signs& signs, const float* values, const Index3& first, Sam
         const uint8_t inside = signs.inside(x, y, z);
         const float* at = values + sample_index(x, y, z);
         uint8_t joined = 0;
-        if (has_ambiguous_face[inside]) {
+        if (has_ambiguous_face(inside)) {
           std::array<float, 8> corner;
           for (int c = 0; c < 8; ++c) corner[c] = at[sample_index(c & 1, c >> 1 & 1, c >> 2)];
           joined = joined_faces(inside, corner);
@@ -254,10 +254,7 @@ void append(const std::vector<Sampled>& parts, Cells& cells, Work& work) {
 const Cells::Block& CellFinder::block_at(const Index3& place) {
   const int parity = (place[0] & 1) | (place[1] & 1) << 1 | (place[2] & 1) << 2;
   const Cells::Block*& block = blocks_[size_t(parity)];
-  const auto is_at = [&](const Index3& p) {
-    return p[0] == place[0] && p[1] == place[1] && p[2] == place[2];
-  };
-  if (!block || !is_at(block->place)) block = &cells_.blocks[cells_.block_at.at(key(place))];
+  if (!block || block->place != place) block = &cells_.blocks[cells_.block_at.at(key(place))];
   return *block;
 }
 

@@ -1,6 +1,5 @@
 // Which corner a quad begins with: programs split a quad from its first corner to its third.
 #include <algorithm>
-#include <cmath>
 
 #include "sardf/mesher_stages.hpp"
 
@@ -16,32 +15,21 @@ constexpr double clearly_better = 1e-9;
 void choose_diagonal(Mesh& mesh, size_t face) {
   auto& v = mesh.faces[face];
   Vec3* normals = &mesh.corner_normals[4 * face];
-  // Corners go round almost twice, so that those of a triangle are neighbours.
-  double at[3][7], normal[3][7];
-  for (size_t k = 0; k < 7; ++k) {
-    for (size_t axis = 0; axis < 3; ++axis) {
-      at[axis][k] = mesh.vertices[v[k & 3]][axis];
-      normal[axis][k] = normals[k & 3][axis];
-    }
-  }
+  std::array<Vec3, 4> at;
+  for (size_t k = 0; k < 4; ++k) at[k] = mesh.vertices[v[k]];
   // How well the triangle without corner k agrees with its corners' normals: the least cosine; -2
   // without area.
-  double agreement[4];
-  for (size_t k = 0; k < 4; ++k) {
-    const auto side = [&](int axis, size_t j) { return at[axis][k + j] - at[axis][k + 1]; };
-    const double x = side(1, 2) * side(2, 3) - side(2, 2) * side(1, 3);
-    const double y = side(2, 2) * side(0, 3) - side(0, 2) * side(2, 3);
-    const double z = side(0, 2) * side(1, 3) - side(1, 2) * side(0, 3);
-    const auto along = [&](size_t j) {
-      return x * normal[0][k + j] + y * normal[1][k + j] + z * normal[2][k + j];
-    };
-    const double length = std::sqrt(x * x + y * y + z * z);
-    const double a = along(1), b = along(2), c = along(3);
-    const double ab = a < b ? a : b, least = ab < c ? ab : c;
-    agreement[k] = length > 0 ? least / length : -2.0;
-  }
-  const double kept = std::min(agreement[3], agreement[1]);
-  const double turned = std::min(agreement[0], agreement[2]);
+  const auto agreement = [&](size_t k) {
+    const size_t a = (k + 1) & 3, b = (k + 2) & 3, c = (k + 3) & 3;
+    const Vec3 normal = cross(at[b] - at[a], at[c] - at[a]);
+    const double length = norm(normal);
+    if (!(length > 0)) return -2.0;
+    const double least =
+        std::min({dot(normal, normals[a]), dot(normal, normals[b]), dot(normal, normals[c])});
+    return std::min(1.0, least / length);
+  };
+  const double kept = std::min(agreement(3), agreement(1));
+  const double turned = std::min(agreement(0), agreement(2));
   if (!(turned > kept + clearly_better)) return;
   std::rotate(v.begin(), v.begin() + 1, v.end());
   std::rotate(normals, normals + 1, normals + 4);

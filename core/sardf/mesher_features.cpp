@@ -14,12 +14,8 @@ namespace sardf::mesher {
 
 namespace {
 
-// Distances of the samples from the vertex, in cells: most vertices need the first two only.
-constexpr double first_distances[] = {0.3, nearest_distance};
+// Distances of the samples from the vertex, in cells.
 constexpr double distances[] = {0.3, 0.1, 0.03, nearest_distance, nearest_distance};
-// A vertex that moves so far in the last step, in cells, goes through all distances, and one that
-// moves so little is where it belongs.
-constexpr double long_step = 0.01, short_step = 1e-5;
 // Directions in which the normals tell less than this, relative to the best, are left alone: the
 // sides of an edge make 2 atan(sqrt(0.03)) = 20 degrees.
 constexpr double least_weight = 0.03;
@@ -73,24 +69,12 @@ class Features {
     Samples samples(places_, numbers);
     start(samples);
     solve(samples);
-    std::vector<double> step;
-    for (const double distance : first_distances) step = approach(samples, distance);
-    std::vector<uint32_t> far, near;
-    for (size_t k = 0; k < numbers.size(); ++k) {
-      if (step[k] <= short_step) {
-        rescue(numbers[k], samples.of(k));
-      } else {
-        (step[k] <= long_step ? near : far).push_back(numbers[k]);
-      }
+    for (const double distance : distances) {
+      samples.take(field_, vertices_.at, distance * grid_.cell);
+      solve(samples);
     }
-    Samples far_samples(places_, far), near_samples(places_, near);
-    if (!far.empty()) {
-      for (const double distance : distances) approach(far_samples, distance);
-    }
-    if (!near.empty()) approach(near_samples, nearest_distance);
-    for (Samples* of : {&far_samples, &near_samples}) {
-      for (size_t k = 0; k < of->vertex_count(); ++k) rescue(of->vertex(k), of->of(k));
-    }
+    samples.take(field_, vertices_.at, nearest_distance * grid_.cell);
+    for (size_t k = 0; k < numbers.size(); ++k) rescue(numbers[k], samples.of(k));
   }
 
  private:
@@ -110,23 +94,14 @@ class Features {
     }
   }
 
-  // One step from samples at a distance; how far each vertex had to go, in cells.
-  std::vector<double> approach(Samples& samples, double distance) const {
-    samples.take(field_, vertices_.at, distance * grid_.cell);
-    return solve(samples);
-  }
-
-  std::vector<double> solve(Samples& samples) const {
-    std::vector<double> steps(samples.vertex_count(), infinity);
+  void solve(Samples& samples) const {
     for (size_t k = 0; k < samples.vertex_count(); ++k) {
       Vec3& at = vertices_.at[samples.vertex(k)];
       const int sides = find_sides(samples.of(k));
       if (sides == 0) continue;
       const Vec3 step = meeting_point(samples.of(k), sides, at);
       if (norm(step) < longest_step * grid_.cell) at = in_room(at + step, samples.vertex(k));
-      steps[k] = norm(step) / grid_.cell;
     }
-    return steps;
   }
 
   // A vertex that is not on the surface goes there by plain steps, else to the nearest crossing.

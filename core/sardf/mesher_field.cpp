@@ -221,4 +221,16 @@ double Field::lipschitz(const BoundingBox& box) const {
   return bound >= 1 ? bound : bound < 1 ? 1 : infinity;
 }
 
+Vec3 outward_normal(const Vec3& gradient) {
+  const double length = norm(gradient);
+  if (!(length > 0) || !(length < infinity)) return {0, 0, 0};
+  return (-1 / length) * gradient;
+}
+
+Vec3 newton_step(double value, const Vec3& gradient) {
+  const double squared = dot(gradient, gradient);
+  if (!(squared > 0) || !(squared < infinity) || !(std::abs(value) < infinity)) return {0, 0, 0};
+  return (-value / squared) * gradient;
+}
+
 }  // namespace sardf::mesher

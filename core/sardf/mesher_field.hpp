@@ -1,7 +1,6 @@
 // The field that is meshed: the solid's, clipped by the bounds. Private to core/sardf/mesher*.cpp.
 #pragma once
 
-#include <cmath>
 #include <optional>
 
 #include "sardf/mesher_programs.hpp"
@@ -79,17 +78,9 @@ class Field {
 };
 
 /// The unit outward normal for a gradient; 0 where the gradient is 0 or not finite.
-inline Vec3 outward_normal(const Vec3& gradient) {
-  const double length = norm(gradient);
-  if (!(length > 0) || !(length < infinity)) return {0, 0, 0};
-  return (-1 / length) * gradient;
-}
+Vec3 outward_normal(const Vec3& gradient);
 
 /// From a point to the surface by one step of Newton's method; 0 where there is no gradient.
-inline Vec3 newton_step(double value, const Vec3& gradient) {
-  const double squared = dot(gradient, gradient);
-  if (!(squared > 0) || !(squared < infinity) || !(std::abs(value) < infinity)) return {0, 0, 0};
-  return (-value / squared) * gradient;
-}
+Vec3 newton_step(double value, const Vec3& gradient);
 
 }  // namespace sardf::mesher

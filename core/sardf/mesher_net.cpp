@@ -73,7 +73,7 @@ Pieces find_pieces(uint8_t inside, uint8_t joined) {
   Pieces pieces{{}, 0, {}};
   std::array<int8_t, 12> number;
   number.fill(-1);
-  const uint16_t crossed = crossed_edges[inside];
+  const uint16_t crossed = crossed_edges(inside);
   for (int k = 0; k < 12; ++k) {
     pieces.of_edge[k] = -1;
     if (!(crossed >> k & 1)) continue;
@@ -98,7 +98,7 @@ bool meets_twice(const Pieces& pieces, int axis, int s) {
 void settle_ambiguous_faces(Cells& cells) {
   CellFinder find(cells);
   for (uint32_t i = 0; i < cells.at.size(); ++i) {
-    if (!has_ambiguous_face[cells.inside[i]]) continue;
+    if (!has_ambiguous_face(cells.inside[i])) continue;
     for (int axis = 0; axis < 3; ++axis) {
       if (!is_ambiguous(cells.inside[i], axis, 1)) continue;
       Index3 next = cells.at[i];
@@ -116,14 +116,53 @@ void settle_ambiguous_faces(Cells& cells) {
   }
 }
 
+template <class Of>
+auto table_of(Of of) {
+  std::array<decltype(of(uint8_t(0))), 256> table;
+  for (int i = 0; i < 256; ++i) table[i] = of(uint8_t(i));
+  return table;
+}
+
 }  // namespace
 
+bool has_ambiguous_face(uint8_t inside) {
+  static const auto table = table_of([](uint8_t i) {
+    bool found = false;
+    for (int face = 0; face < 6; ++face) found = found || is_ambiguous(i, face / 2, face % 2);
+    return found;
+  });
+  return table[inside];
+}
+
+uint16_t crossed_edges(uint8_t inside) {
+  static const auto table = table_of([](uint8_t i) {
+    uint16_t crossed = 0;
+    for (int k = 0; k < 12; ++k) {
+      const EdgeOfCell& edge = edges_of_cell[k];
+      const int end = edge.corner | 1 << edge.axis;
+      crossed |= uint16_t(((i >> edge.corner ^ i >> end) & 1) << k);
+    }
+    return crossed;
+  });
+  return table[inside];
+}
+
+uint32_t crossing_of(const Cells& cells, uint32_t cell, const EdgeOfCell& edge, CellFinder& find) {
+  uint32_t owner = cell;
+  if (edge.corner != 0) {
+    Index3 at = cells.at[cell];
+    at[edge.e] += edge.side_e;
+    at[edge.g] += edge.side_g;
+    owner = find(at);
+  }
+  // Edges 0, 4 and 8 start from corner 0.
+  const int before = edge.axis == 0 ? 0 : edge.axis == 1 ? 0x001 : 0x011;
+  const int of_owner = crossed_edges(cells.inside[owner]) & before;
+  return cells.first_crossing[owner] + uint32_t((of_owner & 1) + (of_owner >> 4));
+}
+
 Pieces pieces_of(uint8_t inside, uint8_t joined) {
-  static const std::array<Pieces, 256> separated = [] {
-    std::array<Pieces, 256> table;
-    for (int i = 0; i < 256; ++i) table[i] = find_pieces(uint8_t(i), 0);
-    return table;
-  }();
+  static const auto separated = table_of([](uint8_t i) { return find_pieces(i, 0); });
   return joined == 0 ? separated[inside] : find_pieces(inside, joined);
 }
 
@@ -149,6 +188,22 @@ Net build_net(Cells& cells, Work& work) {
     }
   });
   return net;
+}
+
+// A face's four vertices lie in the four quadrants around its grid edge, so that the face, seen
+// along the edge, is a simple polygon that is not turned over: the piece's edges at a side of the
+// cell keep the vertex from passing that side. Past a side without such an edge the vertex may
+// follow the tip of a ridge that pokes out of the cell.
+BoundingBox room_of(const Grid& grid, const Index3& cell, uint8_t sides) {
+  constexpr double margin = 1e-4;
+  BoundingBox room;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double lo = grid.coordinate(axis, cell[axis]);
+    const bool at_lo = sides >> (2 * axis) & 1, at_hi = sides >> (2 * axis + 1) & 1;
+    room.lo[axis] = lo + (at_lo ? margin : -1) * grid.cell;
+    room.hi[axis] = lo + (at_hi ? 1 - margin : 2) * grid.cell;
+  }
+  return room;
 }
 
 BoundingBox Places::room(uint32_t vertex) const {
@@ -178,11 +233,7 @@ Uses Places::uses(uint32_t vertex) const {
     const EdgeOfCell& edge = edges_of_cell[size_t(k)];
     const bool leaves = inside >> edge.corner & 1;
     const int corner = leaves ? edge.face_corner : 3 - edge.face_corner;
-    Index3 at = cells_.at[cell];
-    at[edge.e] += edge.side_e;
-    at[edge.g] += edge.side_g;
-    const uint32_t owner = edge.corner == 0 ? cell : find(at);
-    uses.at[uses.count++] = 4 * crossing_at(cells_, owner, edge.axis) + uint32_t(corner);
+    uses.at[uses.count++] = 4 * crossing_of(cells_, cell, edge, find) + uint32_t(corner);
   }
   std::sort(uses.at.begin(), uses.at.begin() + uses.count);
   return uses;

@@ -6,7 +6,6 @@
 // two axes e = (d + 1) % 3 and g = (d + 2) % 3, is number 4 d + (side in e) + 2 (side in g).
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <unordered_map>
@@ -153,15 +152,10 @@ constexpr bool is_ambiguous(uint8_t inside, int axis, int s) {
   const auto at = [&](int k) { return inside >> k & 1; };
   return at(c) == at(c + e + g) && at(c + e) == at(c + g) && at(c) != at(c + e);
 }
-constexpr std::array<bool, 256> has_ambiguous_face = [] {
-  std::array<bool, 256> table{};
-  for (int i = 0; i < 256; ++i) {
-    for (int face = 0; face < 6; ++face) {
-      table[size_t(i)] = table[size_t(i)] || is_ambiguous(uint8_t(i), face / 2, face % 2);
-    }
-  }
-  return table;
-}();
+bool has_ambiguous_face(uint8_t inside);
+
+/// The crossed edges of a cell: bit k is set for edge k.
+uint16_t crossed_edges(uint8_t inside);
 
 /// Edges, their starts (a corner) and which corner of its face a cell is, where the edge leaves the
 /// solid; where it enters: 3 less that.
@@ -182,49 +176,12 @@ constexpr std::array<EdgeOfCell, 12> edges_of_cell = [] {
   return edges;
 }();
 
-/// The crossed edges of a cell with these corners inside: bit k is set for edge k.
-constexpr std::array<uint16_t, 256> crossed_edges = [] {
-  std::array<uint16_t, 256> table{};
-  for (size_t inside = 0; inside < 256; ++inside) {
-    for (size_t k = 0; k < 12; ++k) {
-      const int start = edges_of_cell[k].corner, end = start | 1 << edges_of_cell[k].axis;
-      table[inside] |= uint16_t(((inside >> start ^ inside >> end) & 1) << k);
-    }
-  }
-  return table;
-}();
+/// The number of the crossing on an edge of a cell.
+uint32_t crossing_of(const Cells& cells, uint32_t cell, const EdgeOfCell& edge, CellFinder& find);
 
-/// The number of the crossing on an edge along the axis that starts at the cell's corner 0.
-inline uint32_t crossing_at(const Cells& cells, uint32_t cell, int axis) {
-  // Edges 0, 4 and 8 do.
-  constexpr int before[3] = {0, 0x001, 0x011};
-  const int crossed = crossed_edges[cells.inside[cell]] & before[axis];
-  return cells.first_crossing[cell] + uint32_t((crossed & 1) + (crossed >> 4));
-}
-
-/// Where the vertex of a piece with these sides (Pieces::sides) may lie. A face's four vertices lie
-/// in the four quadrants around its grid edge, so that the face, seen along the edge, is a simple
-/// polygon that is not turned over: the piece's edges at a side of the cell keep the vertex from
-/// passing that side. Past a side without such an edge the vertex may follow the tip of a ridge
-/// that pokes out of the cell.
-inline BoundingBox room_of(const Grid& grid, const Index3& cell, uint8_t sides) {
-  constexpr double margin = 1e-4;
-  BoundingBox room;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double lo = grid.coordinate(axis, cell[axis]);
-    const bool at_lo = sides >> (2 * axis) & 1, at_hi = sides >> (2 * axis + 1) & 1;
-    room.lo[axis] = lo + (at_lo ? margin : -1) * grid.cell;
-    room.hi[axis] = lo + (at_hi ? 1 - margin : 2) * grid.cell;
-  }
-  return room;
-}
-inline Vec3 clamped(const Vec3& point, const BoundingBox& room) {
-  Vec3 result;
-  for (int axis = 0; axis < 3; ++axis) {
-    result[axis] = std::clamp(point[axis], room.lo[axis], room.hi[axis]);
-  }
-  return result;
-}
+/// Where the vertex of a piece with these sides (Pieces::sides) may lie.
+BoundingBox room_of(const Grid& grid, const Index3& cell, uint8_t sides);
+Vec3 clamped(const Vec3& point, const BoundingBox& room);
 
 /// Throws Error when the mesh would not fit into `memory_limit` bytes. From then on the field has
 /// shorter programs for the blocks.

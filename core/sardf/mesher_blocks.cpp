@@ -26,6 +26,8 @@ constexpr double steep = 1.2;
 constexpr size_t short_program = 4;
 // How far beyond its node a program is good, in cells: rounded points stay within.
 constexpr double room_in_cells = 0.125;
+// Parts of blocks get programs of their own where the block's is longer than this.
+constexpr size_t long_program = 12;
 
 ProgramPointer if_shorter(Evaluator program, size_t steps) {
   if (program.tape().instructions().size() >= steps) return nullptr;

@@ -12,45 +12,46 @@ namespace {
 struct Bracket {
   double lo = 0, hi = 1;
   double at_lo, at_hi;  // values there, scaled by the Illinois rule
-  double rise;          // between the ends
-  double tangent = -1;  // where the tangent at the last point tried vanishes
-  int kept = 0;         // which end stayed last: -1 or 1
+  double best = 0, best_value;
+  double tolerance;
+  int kept = 0;  // which end stayed last: -1 or 1
 };
 
 constexpr int most_steps = 60;
 
-// Relative to the rise along the edge: a value that Newton's method takes to 0 in one step, as the
-// field hardly bends within so little of a cell; and one that is 0.
-constexpr double near_zero = 1e-4, zero = 1e-6;
-constexpr double narrowest = 1e-7;
-
-Bracket start_of(const Edge& edge) {
+Bracket start_of(const Crossing& crossing) {
   constexpr double largest = 1e30;  // an end may be infinite
   Bracket b;
-  b.at_lo = std::clamp(double(edge.start), -largest, largest);
-  b.at_hi = std::clamp(double(edge.end), -largest, largest);
+  b.at_lo = std::clamp(double(crossing.start), -largest, largest);
+  b.at_hi = std::clamp(double(crossing.end), -largest, largest);
   if (std::isnan(b.at_lo)) b.at_lo = -std::abs(b.at_hi);
   if (std::isnan(b.at_hi)) b.at_hi = -std::abs(b.at_lo);
-  b.rise = std::abs(b.at_hi - b.at_lo);
-  // An end on the surface is the crossing.
-  if (std::abs(b.at_lo) <= zero * b.rise) b.hi = 0;
-  if (std::abs(b.at_hi) <= zero * b.rise) b.lo = b.hi;
+  const bool start_is_nearer = std::abs(b.at_lo) <= std::abs(b.at_hi);
+  b.best = start_is_nearer ? 0 : 1;
+  b.best_value = start_is_nearer ? b.at_lo : b.at_hi;
+  b.tolerance = 1e-6 * std::abs(b.at_hi - b.at_lo);
   return b;
 }
 
-// The next point: where the last one's tangent or the chord vanishes, every third step the middle
-// so that no bracket stays wide.
+bool finished(const Bracket& b) {
+  return std::abs(b.best_value) <= b.tolerance || b.hi - b.lo <= 1e-7;
+}
+
+// The next point: regula falsi, every third step the middle so that no bracket stays wide.
 double next_point(const Bracket& b, int step) {
   const double middle = 0.5 * (b.lo + b.hi);
   const double slope = b.at_hi - b.at_lo;
-  if (step % 3 == 2 || slope == 0 || b.lo == b.hi) return middle;
-  if (b.lo < b.tangent && b.tangent < b.hi) return b.tangent;
+  if (step % 3 == 2 || slope == 0) return middle;
   const double t = b.lo - b.at_lo * (b.hi - b.lo) / slope;
   return t > b.lo && t < b.hi ? t : middle;
 }
 
 // Takes the value at t into account. `leaves`: the start of the edge is inside.
 void narrow(Bracket& b, double t, double value, bool leaves) {
+  if (std::abs(value) < std::abs(b.best_value)) {
+    b.best = t;
+    b.best_value = value;
+  }
   if ((value >= 0) == leaves) {
     if (b.kept == 1) b.at_hi *= 0.5;
     b.lo = t;
@@ -64,64 +65,55 @@ void narrow(Bracket& b, double t, double value, bool leaves) {
   }
 }
 
-// Takes value and gradient at t into account; whether the crossing is found.
-bool take(Bracket& b, double t, double value, double derivative, Crossing& crossing) {
-  crossing.at = float(t);
-  if (b.lo == b.hi) return true;
-  const double step = -value / derivative;
-  if (std::abs(value) <= near_zero * b.rise && std::abs(step) <= 2 * near_zero) {
-    crossing.at = float(std::clamp(t + step, 0.0, 1.0));
-    return true;
-  }
-  narrow(b, t, value, crossing.leaves);
-  b.tangent = t + step;
-  return std::abs(value) <= zero * b.rise || b.hi - b.lo <= narrowest;
+Vec3 point_on(const Grid& grid, const Crossing& crossing, double t) {
+  Vec3 p = grid.point(crossing.at);
+  p[crossing.axis] += t * grid.cell;
+  return p;
 }
 
 template <class T>
-void locate_some(const Field& field, const Grid& grid, const Evaluator& program, const Edge* edges,
-                 size_t n, Crossing* crossings) {
+void solve(const Field& field, const Grid& grid, const Crossing* crossings, size_t n, Vec3* at,
+           Vec3* normals) {
   Points<T> points;
   std::array<Bracket, Points<T>::capacity> brackets;
   std::array<double, Points<T>::capacity> tried;
-  std::array<uint16_t, Points<T>::capacity> open;
+  std::vector<size_t> open;
   for (size_t i = 0; i < n; ++i) {
-    brackets[i] = start_of(edges[i]);
-    open[i] = uint16_t(i);
+    brackets[i] = start_of(crossings[i]);
+    if (!finished(brackets[i])) open.push_back(i);
   }
-  size_t count = n;
-  for (int step = 0; step < most_steps && count > 0; ++step) {
-    for (size_t k = 0; k < count; ++k) {
-      const size_t i = open[k];
-      tried[k] = next_point(brackets[i], step);
-      Vec3 p = grid.point(edges[i].at);
-      p[crossings[i].axis] += tried[k] * grid.cell;
-      points.set(k, p);
+  for (int step = 0; step < most_steps && !open.empty(); ++step) {
+    for (size_t k = 0; k < open.size(); ++k) {
+      tried[k] = next_point(brackets[open[k]], step);
+      points.set(k, point_on(grid, crossings[open[k]], tried[k]));
     }
-    field.differentiate(program, points, count);
-    size_t left = 0;
-    for (size_t k = 0; k < count; ++k) {
+    field.evaluate(points, open.size());
+    for (size_t k = 0; k < open.size(); ++k) {
       const size_t i = open[k];
-      const Vec3 gradient = points.gradient_at(k), normal = outward_normal(gradient);
-      crossings[i].normal = {float(normal[0]), float(normal[1]), float(normal[2])};
-      const double derivative = gradient[crossings[i].axis] * grid.cell;
-      if (!take(brackets[i], tried[k], double(points.value[k]), derivative, crossings[i])) {
-        open[left++] = uint16_t(i);
-      }
+      narrow(brackets[i], tried[k], double(points.value[k]), crossings[i].leaves);
     }
-    count = left;
+    std::erase_if(open, [&](size_t i) { return finished(brackets[i]); });
   }
+  for (size_t i = 0; i < n; ++i) {
+    at[i] = point_on(grid, crossings[i], brackets[i].best);
+    points.set(i, at[i]);
+  }
+  field.differentiate(points, n);
+  for (size_t i = 0; i < n; ++i) normals[i] = outward_normal(points.gradient_at(i));
 }
 
 }  // namespace
 
-void locate(const Field& field, const Grid& grid, const Evaluator& program, const Edge* edges,
-            size_t n, Crossing* crossings) {
-  const auto method = grid.single ? &locate_some<float> : &locate_some<double>;
-  for (size_t first = 0; first < n; first += Evaluator::block_size) {
-    const size_t count = std::min(Evaluator::block_size, n - first);
-    method(field, grid, program, edges + first, count, crossings + first);
-  }
+CrossingPoints find_crossings(const Field& field, const Grid& grid,
+                              const std::vector<Crossing>& crossings, Work& work) {
+  CrossingPoints result;
+  result.at.resize(crossings.size());
+  result.normal.resize(crossings.size());
+  work.run(crossings.size(), Evaluator::block_size, [&](size_t first, size_t last) {
+    const auto method = grid.single ? &solve<float> : &solve<double>;
+    method(field, grid, &crossings[first], last - first, &result.at[first], &result.normal[first]);
+  });
+  return result;
 }
 
 }  // namespace sardf::mesher

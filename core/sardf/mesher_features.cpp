@@ -61,27 +61,31 @@ double least_steepness(std::span<const Sample> samples) {
 class Features {
  public:
   /// `slack`: how far a vertex may leave its room.
-  Features(const Field& field, const Grid& grid, const Places& places, Vertices& vertices,
-           double slack)
-      : field_(field), grid_(grid), places_(places), vertices_(vertices), slack_(slack) {}
+  Features(const Field& field, const Grid& grid, const Net& net, const CrossingPoints& crossings,
+           Vertices& vertices, double slack)
+      : field_(field),
+        grid_(grid),
+        net_(net),
+        crossings_(crossings),
+        vertices_(vertices),
+        slack_(slack) {}
 
   void place(std::span<const uint32_t> numbers) const {
-    Samples samples(places_, numbers);
+    Samples samples(net_, crossings_, numbers);
     start(samples);
     solve(samples);
     for (const double distance : distances) {
-      samples.take(field_, vertices_.at, distance * grid_.cell);
+      samples.take(field_, vertices_, distance * grid_.cell);
       solve(samples);
     }
-    samples.take(field_, vertices_.at, nearest_distance * grid_.cell);
+    samples.take(field_, vertices_, nearest_distance * grid_.cell);
     for (size_t k = 0; k < numbers.size(); ++k) rescue(numbers[k], samples.of(k));
   }
 
  private:
   Vec3 in_room(const Vec3& point, uint32_t vertex) const {
     const Vec3 slack{slack_, slack_, slack_};
-    const BoundingBox room = places_.room(vertex);
-    return clamped(point, {room.lo - slack, room.hi + slack});
+    return clamped(point, {net_.room[vertex].lo - slack, net_.room[vertex].hi + slack});
   }
 
   // Each vertex to the middle of its crossings.
@@ -125,27 +129,28 @@ class Features {
 
   Vec3 nearest_crossing(uint32_t v, std::span<const Sample> samples) const {
     const auto distance = [&](const Sample& s) {
-      return norm(places_.crossing(s.use / 4) - vertices_.at[v]);
+      return norm(crossings_.at[s.use / 4] - vertices_.at[v]);
     };
     const auto best = std::min_element(
         samples.begin(), samples.end(),
         [&](const Sample& a, const Sample& b) { return distance(a) < distance(b); });
-    return in_room(places_.crossing(best->use / 4), v);
+    return in_room(crossings_.at[best->use / 4], v);
   }
 
   const Field& field_;
   const Grid& grid_;
-  const Places& places_;
+  const Net& net_;
+  const CrossingPoints& crossings_;
   Vertices& vertices_;
   double slack_;
 };
 
 }  // namespace
 
-void place_features(const Field& field, const Grid& grid, const Net& net, const Places& places,
-                    Vertices& vertices, Work& work) {
+void place_features(const Field& field, const Grid& grid, const Net& net,
+                    const CrossingPoints& crossings, Vertices& vertices, Work& work) {
   const auto place = [&](const std::vector<uint32_t>& numbers, double slack) {
-    const Features features(field, grid, places, vertices, slack);
+    const Features features(field, grid, net, crossings, vertices, slack);
     work.run(numbers.size(), 32, [&](size_t first, size_t last) {
       features.place(std::span(numbers).subspan(first, last - first));
     });
@@ -153,7 +158,7 @@ void place_features(const Field& field, const Grid& grid, const Net& net, const 
   place(vertices.sharp, slack_in_cells * grid.cell);
   // Those that were taken back stay in their room, so this ends.
   for (;;) {
-    const auto numbers = vertices_to_take_back(grid, net, places, vertices);
+    const auto numbers = vertices_to_take_back(grid, net, crossings, vertices);
     if (numbers.empty()) break;
     place(numbers, 0);
   }

@@ -40,21 +40,6 @@ class Field {
   /// Values and gradients of the first n points.
   template <class T>
   void differentiate(Points<T>& points, size_t n) const;
-  template <class T>
-  void differentiate(const Evaluator& program, Points<T>& points, size_t n) const;
-
-  /// A program and where it is good.
-  struct Local {
-    const Evaluator* program;
-    BoundingBox valid;
-  };
-  /// For the points in a node of the octree, most of all.
-  Local local(const Index3& node, int level) const;
-  /// Values by the local program, of points out of its box by those that are good there.
-  template <class T>
-  void evaluate(const Local& local, Points<T>& points, size_t n) const;
-  template <class T>
-  void differentiate(const Local& local, Points<T>& points, size_t n) const;
 
   /// Encloses the values over the box, where the solid's are in this range.
   Interval clipped(const Interval& solid, const BoundingBox& box) const;
@@ -68,9 +53,6 @@ class Field {
   // The program for each point, and whether it is one for all.
   template <class T>
   bool find_programs(const Points<T>& points, size_t n, const Evaluator** found) const;
-
-  template <class T>
-  void clip(Points<T>& points, size_t n) const;
 
   const Evaluator& solid_;
   BoundingBox bounds_;

@@ -67,9 +67,11 @@ Interval scalar_product(const Slope& a, const Slope& b) {
 double weighted_length(std::span<const Interval> by, std::span<const Slope> in) {
   double squared = 0;
   for (size_t k = 0; k < in.size(); ++k) {
+    if (in[k].length == 0) continue;  // however large the partial
     const Interval own = Interval(by[k].magnitude()) * Interval(in[k].length);
     squared = rounded_up(squared + square(own).hi);
     for (size_t j = 0; j < k; ++j) {
+      if (in[j].length == 0) continue;
       const Interval both = by[j] * by[k] * scalar_product(in[j], in[k]);
       squared = rounded_up(squared + max(0.0, 2 * both.hi));
     }

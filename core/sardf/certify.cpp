@@ -86,13 +86,19 @@ class BoundedParts {
   bool empty() const { return parts_.empty(); }
   const Part& worst() const { return parts_.top(); }
 
-  /// Halves the worst part, until there are so many parts, or its bound lies close to a gradient
-  /// that is attained, or its diagonal is below the smallest.
-  void split(int most, double smallest) {
-    constexpr double close_enough = 1.001;
-    for (int used = 1; used < most && !parts_.empty(); ++used) {
+  /// Halves the worst part, until there are so many parts, or its bound is small enough or less
+  /// than close_enough times a gradient that is attained, or its diagonal is below the smallest.
+  void split(const BoundEffort& effort, double close_enough, double smallest) {
+    constexpr int boxes_per_report = 64;
+    const auto is_done = [&](const Part& part) {
+      return part.length <= max(effort.enough, close_enough * attained_) ||
+             (effort.enough > 0 && attained_ > effort.enough) || part.box.diagonal() < smallest;
+    };
+    for (int used = 1; used < effort.boxes && !parts_.empty() && !is_done(worst()); ++used) {
+      if (used % boxes_per_report == 0 && effort.progress && !effort.progress(0)) {
+        throw Cancelled();
+      }
       const Part part = worst();
-      if (part.length <= close_enough * attained_ || part.box.diagonal() < smallest) return;
       parts_.pop();
       const std::shared_ptr<const Evaluator> field = shortened(part);
       for (const BoundingBox& half : halves(part.box)) add({half, part.length, field});
@@ -181,16 +187,17 @@ double error_bound(const Expression& expression) { return certified_error(expres
 
 CertifiedBound certified_lipschitz(const Evaluator& evaluator, const BoundingBox& box, int boxes) {
   BoundedParts parts(evaluator, box, infinity);
-  if (is_finite(box)) parts.split(boxes, 0);
+  if (is_finite(box)) parts.split({boxes}, 1.001, 0);
   const double length = parts.worst().length;
   if (length < infinity) return {length, ""};
   return {infinity, infinite_node(*parts.worst().field, parts.worst().box)};
 }
 
 std::optional<double> band_lipschitz_bound(const Evaluator& evaluator, const BoundingBox& box,
-                                           double band, int boxes) {
+                                           double band, const BoundEffort& effort) {
+  constexpr double close_enough = 1.03;
   BoundedParts parts(evaluator, box, band);
-  parts.split(boxes, smallest_part * box.diagonal());
+  parts.split(effort, close_enough, smallest_part * box.diagonal());
   if (parts.empty()) return {};
   return parts.worst().length;
 }

@@ -16,6 +16,8 @@
 //   double steepness(Interval x, Interval y, double longer, Interval product) const;
 //                                      of a blend: bound of the gradient's length where those of
 //                                      x and y are at most `longer` and have this scalar product
+//   std::optional<Op> near(Choice, Choice) const;  the same over these ranges for less work
+//   void append_edges(std::vector<double>&) const; what tells such an operation from the whole one
 //   double blend_error() const;        bound of |this - its min/max counterpart|
 //   static constexpr Join join;        which boolean of a blend it is
 //   static constexpr bool mean_value = true;       its slopes bound it better than its formula
@@ -76,6 +78,7 @@ class OperationOf final : public Operation {
     auto append = [&](const Parameter&, auto member) { append_numbers(numbers_, op_.*member); };
     if constexpr (requires { Op::parameters(append); }) Op::parameters(append);
     for (double a : numbers_) magnitude_ = std::max(magnitude_, std::abs(a));
+    if constexpr (requires { op_.append_edges(numbers_); }) op_.append_edges(numbers_);
     std::array<Enclosure, arity> anything;
     anything.fill({Interval::all(), true});
     // A blend may add 0 to one of its arguments: the formula alone does not show that.
@@ -194,6 +197,15 @@ class OperationOf final : public Operation {
       return fate_between(in, demand, Op::monotone, magnitude_, error, chosen);
     }
     return fate_of(chosen(in));
+  }
+
+  OperationPointer narrowed(const Enclosure* in) const override {
+    if constexpr (requires(Choice c) { op_.near(c, c); }) {
+      auto near = op_.near(Choice::of(in[0].value, in[0].may_be_nan),
+                           Choice::of(in[1].value, in[1].may_be_nan));
+      if (near) return std::make_shared<OperationOf>(std::move(*near));
+    }
+    return nullptr;
   }
 
   double gain(const Interval* in) const override { return gain_with(local_partials(in), in); }

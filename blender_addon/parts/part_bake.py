@@ -49,17 +49,21 @@ def find(key):
     return part
 
 
-def place(scene, part, made, built):
-    """The mesh object of a baked part under its Empty: a new one, or the earlier one renewed."""
-    earlier = _baked(part)
-    if earlier is not None:
-        for key in [key for key in earlier.keys() if key.startswith(KEEPS)]:  # noqa: SIM118
-            del earlier[key]
+def placed(scene, made, built, earlier):
+    """The mesh object of a bake: a new one, or the `earlier` one renewed."""
+    for key in [key for key in (earlier or {}).keys() if key.startswith(KEEPS)]:  # noqa: SIM118
+        del earlier[key]
     item = assemble.place(scene, made, built, earlier or assemble.NEW)
     for channel, image in built.items():
         if image.use_fake_user:  # no material reads it: the object does, so that both go together
             item[KEEPS + channel] = image
             image.use_fake_user = False
+    return item
+
+
+def place(scene, part, made, built):
+    """The mesh object of a baked part under its Empty: a new one, or the earlier one renewed."""
+    item = placed(scene, made, built, _baked(part))
     if item.parent != part:
         item.name = f"{part.name} baked"
         item.parent = part

@@ -6,7 +6,6 @@ import itertools
 
 from mathutils import Matrix, Vector
 
-from ..baked import assemble
 from . import part_bake, part_scene
 from .part_error import PartError
 
@@ -83,7 +82,7 @@ def place(scene, part, piece, made, built):
     if "1" not in piece.code:
         return part_bake.place(scene, part, made, built)
     earlier = find(part).get(piece.code)
-    item = assemble.place(scene, made, built, earlier or assemble.NEW)
+    item = part_bake.placed(scene, made, built, earlier)
     if earlier is None:
         item[PIECE] = piece.code
         item.name = f"{part.name} piece {piece.code}"

@@ -20,7 +20,7 @@ class Work:
         self.unexpected = []
 
     def step(self):
-        weights = {"add": 4, "bake": 4, "bake_pieces": 4, "delete": 1}
+        weights = {"add": 4, "bake": 4, "bake_pieces": 4, "redo": 8, "delete": 1}
         often = [weights.get(name, 2) for name in STEPS]
         (name,) = self.random.choices(list(STEPS), often)
         try:

@@ -55,6 +55,10 @@ class NothingLeft(Exception):
     """The scene's sections remove all of it, said in one sentence."""
 
 
+def name_of(scene, request):
+    return scene.title or Path(request.path).stem
+
+
 def leaves_nothing(scene):
     """Whether a scene's sections leave nothing of it, or nothing as thick as a CHECKED-th of it."""
     if not scene.section_count:
@@ -81,7 +85,6 @@ def make_part(sardf, request, progress=None):
     else:
         scene = sardf.Scene.from_json(json.dumps(request.scene), {}, between(0.0, 0.0))
     tangent = tangent_of(scene, request.tangent)
-    name = scene.title or Path(request.path).stem
     try:
         mesh = scene.mesh(
             resolution=request.resolution,
@@ -89,9 +92,13 @@ def make_part(sardf, request, progress=None):
             size=request.size,
             progress=between(0.0, MESH_SHARE),
         )
+    except sardf.Cancelled:
+        raise
     except sardf.Error:
         if request.sections and leaves_nothing(scene):
-            raise NothingLeft(f"the sections leave nothing of '{name}'") from None
+            raise NothingLeft(
+                f"the sections leave nothing of '{name_of(scene, request)}'"
+            ) from None
         raise
     maps = scene.bake(
         mesh,
@@ -103,7 +110,7 @@ def make_part(sardf, request, progress=None):
     vertices = mesh.vertices
     attributes = attributes_at(scene, vertices)
     return Part(
-        name=name,
+        name=name_of(scene, request),
         source=str(request.path),
         scene=scene,
         mesh=mesh,

@@ -9,9 +9,13 @@ baked        a scene file's or a part's scene -> object with textures and fracti
 picture      camera, lights and render settings
 headless commands    runs without a window: as a script, and as `blender -c sardf`
 arguments sources outputs    their options, what they read, and how files get their names
-properties operators piece_operator panel    the user interface for scene files, and the bake
+properties operators panel    the user interface for scene files
+bake_settings bake_plan bake_info bake_operator bake_panel    the bake of scene files and parts
+piece_operator    the bake of the pieces that sections leave
+preferences  where POV-Ray is
 parts        parts modelled from Blender objects
 preview      parts shown in the viewport while they are made
+reference    the scene rendered in POV-Ray, and compared with Cycles
 """
 
 import importlib
@@ -28,12 +32,16 @@ bl_info = {
 
 
 MODULES = (  # in the order in which Blender must know them
+    "preferences",
+    "bake_settings",
     "properties",
     "parts.part_properties",
     "parts.part_objects",
     "parts.part_wireframes",
     "parts.part_now",
     "parts.part_status",
+    "bake_info",
+    "bake_operator",
     "operators",
     "piece_operator",
     "parts.part_lists",
@@ -42,11 +50,15 @@ MODULES = (  # in the order in which Blender must know them
     "panel",
     "parts.part_panel",
     "parts.part_section_panel",
+    "bake_panel",
     "commands",
     "preview.preview_settings",
     "preview.preview_panel",
     "preview.preview",
     "parts.part_preview",
+    "reference.reference_properties",
+    "reference.reference_operators",
+    "reference.reference_panel",
 )
 
 

@@ -36,8 +36,7 @@ def whole(low, high):
     return parse
 
 
-def looks(text):
-    known = ("shaded", "flat", "normals")
+def looks(text, known=("shaded", "flat", "normals")):
     names = text.split(",")
     for name in names:
         if name not in known:
@@ -45,10 +44,18 @@ def looks(text):
     return [name for name in known if name in names]
 
 
+def reference_looks(text):
+    return looks(text, ("flat", "shaded"))
+
+
 COMMANDS = {  # what they do, and what -o names
     "render": ("Bake and render without a window.", "folder to write to"),
     "bake": ("Bake without a window.", "folder to write to"),
     "export": ("Write a scene file, or a scene for POV-Ray.", "file.json or file.pov"),
+    "reference": (
+        "Render a file's parts in POV-Ray and compare with Cycles.",
+        "folder to write to",
+    ),
 }
 
 
@@ -62,6 +69,9 @@ def parse(arguments, command="render", program="headless.py"):
     parser.add_argument("scene", metavar="SCENE", nargs="?" if opened else None,
                         help="scene file, or .blend with a part")  # fmt: skip
     parser.add_argument("-o", "--output", required=True, metavar="OUT", help=output)
+    if command == "reference":
+        _add_reference(parser)
+        return parser.parse_args(arguments)
     parser.add_argument("--part", default="", metavar="NAME",
                         help="of a .blend: the part to take, where it has several")  # fmt: skip
     if command == "export":
@@ -95,12 +105,19 @@ def _checked_export(options):
     return options
 
 
+def _add_reference(parser):
+    parser.add_argument("--look", type=reference_looks, default=["flat", "shaded"],
+                        metavar="LOOK[,LOOK]", help="flat, shaded (both)")  # fmt: skip
+    parser.add_argument("--samples", type=whole(1, 65536), default=64,
+                        help="Cycles' samples of each pixel, shaded (%(default)s)")  # fmt: skip
+    parser.add_argument("--light-samples", type=whole(1, 16), default=4,
+                        help="POV-Ray's along each side of a light (%(default)s)")  # fmt: skip
+    _add_sizes(parser)
+
+
 def _add_bake(parser):
     flag = argparse.BooleanOptionalAction
-    parser.add_argument("--resolution", type=whole(4, 4096), default=128,
-                        help="cells along the longest side (%(default)s)")  # fmt: skip
-    parser.add_argument("--size", type=whole(64, 16384), default=2048,
-                        help="texels along a texture's side (%(default)s)")  # fmt: skip
+    _add_sizes(parser)
     parser.add_argument("--width", type=whole(8, 16384), default=640, help="pixels (%(default)s)")
     parser.add_argument("--height", type=whole(8, 16384), default=480, help="pixels (%(default)s)")
     parser.add_argument("--camera", metavar="JSON", help="a camera.json to use, not our framing")
@@ -109,6 +126,14 @@ def _add_bake(parser):
                         "grain_direction, where the scene has it")  # fmt: skip
     parser.add_argument("--normal-map", action=flag, default=False,
                         help="bake the solid's normals for a coarse mesh")  # fmt: skip
+
+
+def _add_sizes(parser):
+    flag = argparse.BooleanOptionalAction
+    parser.add_argument("--resolution", type=whole(4, 4096), default=128,
+                        help="cells along the longest side (%(default)s)")  # fmt: skip
+    parser.add_argument("--size", type=whole(64, 16384), default=2048,
+                        help="texels along a texture's side (%(default)s)")  # fmt: skip
     parser.add_argument("--section", action=flag, default=True, help="cut the part open")
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`blender -c sardf bake|render|export`, in Blender 4.2 and later, with the add-on enabled.
+"""`blender -c sardf bake|render|export|reference`, in Blender 4.2 and later, with us enabled.
 
     blender -c sardf render scenes/lined_bore.json -o OUT
     blender part.blend -c sardf export -o part.json        (the part of the opened file)
@@ -10,11 +10,12 @@ The work is that of headless.py, whose options and exit codes these are.
 import bpy
 
 NAME = "sardf"
-USAGE = """usage: blender [FILE.blend] -c sardf bake|render|export [SCENE] -o OUT [options]
+USAGE = """usage: blender [FILE.blend] -c sardf bake|render|export|reference [SCENE] -o OUT ...
 
-  bake    a folder with part.blend and its textures
-  render  the same, and pictures
-  export  a scene file (.json), or a scene for POV-Ray (.pov)
+  bake       a folder with part.blend and its textures
+  render     the same, and pictures
+  export     a scene file (.json), or a scene for POV-Ray (.pov)
+  reference  a .blend's parts in POV-Ray, by its camera and lights, and the difference to Cycles
 
 SCENE is a scene file or a .blend with a part; without it, the opened file's part is taken.
 blender -c sardf bake --help tells the options.

@@ -8,13 +8,14 @@ that is rendered alone is that of the animation.
 
 import json
 from dataclasses import dataclass
+from pathlib import Path
 
 import bpy
 from mathutils import Matrix, Vector
 
 from . import outputs, sources
 from .arguments import WRONG_INPUT, Stop
-from .baked import assemble, job
+from .baked import assemble, job, store
 from .parts import part_pieces, part_scene
 from .parts.part_error import PartError
 from .picture import camera, looks, render, studio
@@ -119,13 +120,14 @@ def bake(sardf, scene, frame, matrix, options, signals):
         request = job.Request(
             f"frame {frame.number}, {number}", options.resolution, options.size, options.section,
             channels, options.tangent, shown,
+            store=store.Store(Path(bpy.app.tempdir) / "sardf frame", replace=True),
         )  # fmt: skip
         try:
             arrays = job.make_part(sardf, request, progress=lambda share: not signals.name)
         except job.NothingLeft as error:
             print(f"sardf: frame {frame.number}: {error}")
             continue
-        images = assemble.build_images(arrays)
+        images = assemble.build_images(sardf, arrays)
         item = assemble.place(scene, arrays, images, assemble.NEW)
         item.matrix_world = matrix @ Matrix.Translation(shift)
         made.append((item, images["base_color"], images))

@@ -22,6 +22,7 @@ import time
 import traceback
 from pathlib import Path
 
+TEXTURES = "textures"
 PACKAGE = __package__ or "sardf_blender"  # a script has no package: called as when installed
 
 
@@ -54,22 +55,25 @@ def load_core():
         raise Stop(FAILED, str(error)) from error
 
 
-def make_part(options, signals):
-    """The arrays of the scene or part, and its camera."""
+def make_part(options, signals, workplace):
+    """The arrays of the scene or part, its textures in the workplace, and its camera."""
     job, camera, sardf = addon("baked.job"), addon("picture.camera"), load_core()
     path, scene = addon("sources").find(options)
     whole = options.command == "bake" or options.keep_blend or "shaded" in options.look
     wanted = job.CHANNELS if whole else ("base_color",)
     wanted += (job.NORMAL_MAP,) if options.normal_map else ()
     request = job.Request(
-        path, options.resolution, options.size, options.section, wanted, options.tangent, scene
-    )
+        path, options.resolution, options.size, options.section, wanted, options.tangent, scene,
+        store=addon("baked.store").Store(workplace / TEXTURES),
+    )  # fmt: skip
     try:
         given = camera.read(options.camera) if options.camera else None
         part = job.make_part(sardf, request, progress=lambda share: not signals.name)
         return part, given or part.scene.camera(width=options.width, height=options.height)
     except (sardf.Error, camera.CameraError, job.NothingLeft) as error:
         raise Stop(WRONG_INPUT, str(error)) from error
+    except addon("baked.store").StoreError as error:
+        raise Stop(FAILED, str(error)) from error
     except sardf.Cancelled:
         signals.check()
         raise
@@ -84,7 +88,7 @@ def build_scene(part, view, options):
     addon("sources").start_empty(options.as_command)
     scene = bpy.context.scene
     assemble.set_units(scene, part.scene)
-    images = assemble.build_images(part)
+    images = assemble.build_images(load_core(), part, keep=True)
     item = assemble.place(scene, part, images)
     camera.place(scene, view)
     bpy.context.view_layer.update()
@@ -94,16 +98,10 @@ def build_scene(part, view, options):
     return scene, item, images
 
 
-def keep_blend(images, workplace):
-    """Write the textures, pack them, and save the .blend without our temporary materials."""
+def keep_blend(workplace):
+    """Save the .blend, its images inside, without our temporary materials."""
     import bpy
 
-    folder = workplace / "textures"
-    folder.mkdir()
-    for channel, image in images.items():
-        path = folder / f"{channel}.exr"
-        addon("baked.images").write_exr(image, path, channel)
-        addon("baked.images").pack(image, path)
     for made in [m for m in bpy.data.materials if m.users == 0]:
         bpy.data.materials.remove(made)
     path = workplace / "part.blend"
@@ -121,7 +119,7 @@ def run(options):
     try:
         if options.frames:
             return addon("frames").run(load_core(), options, signals, workplace)
-        part, view = make_part(options, signals)
+        part, view = make_part(options, signals, workplace)
         faces, vertices = len(part.mesh.faces), len(part.mesh.vertices)
         made = time.perf_counter()
         print(f"sardf: {vertices} vertices, {faces} faces, baked in {made - started:.1f} s")
@@ -134,7 +132,9 @@ def run(options):
             )  # fmt: skip
             print(f"sardf: rendered in {time.perf_counter() - made:.1f} s")
         if options.command == "bake" or options.keep_blend:
-            keep_blend(images, workplace)
+            keep_blend(workplace)
+        else:
+            shutil.rmtree(workplace / TEXTURES)
         signals.check()
         (workplace / "camera.json").write_text(json.dumps(view, indent=1) + "\n")
         return outputs.publish(workplace, options.output)
@@ -167,6 +167,41 @@ def export(options):
     return [output]
 
 
+def reference(options):
+    """Render a .blend file's parts in POV-Ray and in Cycles and return the written files."""
+    import bpy
+
+    sardf, sources = load_core(), addon("sources")
+    compare, work = addon("reference.compare"), addon("reference.work")
+    signals = outputs.Signals()
+    sources.register()
+    if options.scene:
+        sources.open_file(options.scene)
+    settings = bpy.context.scene.sardf
+    settings.resolution, settings.sections = options.resolution, options.section
+    settings = bpy.context.scene.sardf_reference
+    settings.compare, settings.keep_cycles = True, False
+    settings.samples, settings.light_samples = options.samples, options.light_samples
+    workplace = outputs.make_workplace(options.output)
+    try:
+        order = compare.order_of(bpy.context, tuple(options.look), options.size)
+        made = work.make(sardf, order, progress=lambda share: not signals.name)
+        compare.place_baked(bpy.context, order, made)
+        for text in order.stage.warnings:
+            print(f"sardf: {text}")
+        for look in order.looks:
+            print(f"sardf: {compare.store(bpy.context, order, made, look)}")
+            compare.write(workplace, look, bpy.context.scene)
+        return outputs.publish(workplace, options.output)
+    except (compare.Unready, sardf.Error) as error:
+        raise Stop(WRONG_INPUT, str(error)) from error
+    except sardf.Cancelled:
+        signals.check()
+        raise
+    finally:
+        shutil.rmtree(workplace, ignore_errors=True)
+
+
 def main(words, command="render"):
     """Run with a list of command-line words; returns the exit code."""
     program = f"blender -c sardf {command}" if __package__ else "headless.py"
@@ -175,7 +210,7 @@ def main(words, command="render"):
         options.command, options.as_command = command, bool(__package__)
         if importlib.util.find_spec("bpy") is None:
             raise Stop(FAILED, "run this in Blender, or with a Python that has the bpy module")
-        for path in (export if command == "export" else run)(options):
+        for path in {"export": export, "reference": reference}.get(command, run)(options):
             print(f"sardf: wrote {path}")
         return DONE
     except Stop as stop:

@@ -5,7 +5,7 @@ import textwrap
 
 import bpy
 
-from . import operators, properties
+from . import properties
 
 LINE = 28  # characters that fit into the sidebar at its default width
 
@@ -26,14 +26,6 @@ class SARDF_PT_main(bpy.types.Panel):
         layout.prop(settings, "filepath", text="File")
         self._draw_summary(settings)
         column = layout.column()
-        column.enabled = operators.SARDF_OT_bake.job is None
-        column.prop(settings, "resolution")
-        column.prop(settings, "size")
-        column.prop(settings, "sections")
-        column.prop(settings, "tangent_attribute")
-        column.prop(settings, "set_units")
-        self._draw_bake()
-        column = layout.column()
         column.prop(settings, "samples")
         column.prop(settings, "studio")
         column.operator("sardf.render", icon="RENDER_STILL")
@@ -47,17 +39,6 @@ class SARDF_PT_main(bpy.types.Panel):
         for text in (summary.error,) if summary.error else summary.lines:
             for row in textwrap.wrap(text, LINE, break_long_words=True):
                 column.label(text=row)
-
-    def _draw_bake(self):
-        bake = operators.SARDF_OT_bake
-        if bake.job is None:
-            row = self.layout.row()
-            row.scale_y = 1.5
-            row.operator("sardf.bake", icon="TEXTURE")
-        elif hasattr(self.layout, "progress"):  # Blender 4.0 and later
-            self.layout.progress(factor=bake.job.share, text=f"{bake.stage} (Esc cancels)")
-        else:
-            self.layout.label(text=f"{bake.stage} (Esc cancels)", icon="TIME")
 
 
 def register():

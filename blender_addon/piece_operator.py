@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Baking a part in the pieces that its sections cut it into."""
 
+import dataclasses
 import time
 import traceback
 from typing import ClassVar
 
 import bpy
 
-from . import core, operators
-from .baked import images, job
+from . import bake_operator, bake_plan, core
+from .bake_operator import SARDF_OT_bake
+from .baked import assemble, job, unwrap
 from .parts import part_bake, part_objects, part_pieces
 from .parts.part_error import PartError
 
@@ -27,7 +29,7 @@ class SARDF_OT_bake_pieces(bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         part = part_objects.part_above(context.active_object)
-        return operators.SARDF_OT_bake.job is None and part is not None
+        return SARDF_OT_bake.job is None and part is not None
 
     def execute(self, context):
         if not self._begin(context):
@@ -42,11 +44,17 @@ class SARDF_OT_bake_pieces(bpy.types.Operator):
         if not self._begin(context) or not self._step(context):
             return {"CANCELLED"}
         manager = context.window_manager
-        self._timer = manager.event_timer_add(operators.POLL_SECONDS, window=context.window)
+        SARDF_OT_bake.timer = manager.event_timer_add(
+            bake_operator.POLL_SECONDS, window=context.window
+        )
+        manager.progress_begin(0, 100)
         manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
     def modal(self, context, event):
+        if SARDF_OT_bake.timer is None:  # the add-on was disabled, and enabled again
+            self._drop()
+            return {"CANCELLED"}
         if event.type == "ESC" and event.value == "PRESS":
             self.cancel(context)
             self.report({"INFO"}, "Bake cancelled")
@@ -55,6 +63,8 @@ class SARDF_OT_bake_pieces(bpy.types.Operator):
             return {"PASS_THROUGH"}
         if self._step(context):
             context.workspace.status_text_set(f"sardf: {self._stage} (Esc cancels)")
+            context.window_manager.progress_update(self._percent)
+            bake_operator.redraw(context)
             return {"PASS_THROUGH"}
         self._end(context)
         return self._result
@@ -66,17 +76,22 @@ class SARDF_OT_bake_pieces(bpy.types.Operator):
 
     def _begin(self, context):
         part = part_objects.outermost(part_objects.part_of(context.active_object))
-        self._built, self._stage, self._result = [], "", {"CANCELLED"}
+        self._made, self._stage, self._percent, self._result = [], "", 0, {"CANCELLED"}
         try:
             if part is None:
                 raise PartError("no part is active; select one")
-            self._sardf = core.load()
+            self._sardf, self._plan = core.load(), bake_plan.make(context)
+            if self._plan.target is not None:
+                raise PartError(
+                    "pieces have no mesh of before to be baked on: choose another UV Map than "
+                    "Existing"
+                )
             depsgraph = context.evaluated_depsgraph_get()
-            self._wanted, warnings = part_pieces.requests_of(part, context.scene.sardf, depsgraph)
-        except (core.MissingCore, PartError) as error:
+            self._wanted = part_pieces.requests_of(part, self._plan.request, depsgraph)
+        except bake_plan.expected() as error:
             self.report({"ERROR"}, str(error))
             return False
-        for text in warnings:
+        for text in self._plan.warnings:
             self.report({"WARNING"}, text)
         self._part = part_bake.key_of(part)
         self._steps = self._work(context)
@@ -90,63 +105,65 @@ class SARDF_OT_bake_pieces(bpy.types.Operator):
             return False
         except Exception as error:
             self._drop()
-            if not isinstance(error, (PartError, self._sardf.Error)):
+            if not isinstance(error, bake_plan.expected()):
                 traceback.print_exception(error)  # ours to mend: show where
             self.report({"ERROR"}, str(error))
             return False
         finally:
-            operators.SARDF_OT_bake.stage = self._stage
+            SARDF_OT_bake.stage = self._stage
         return True
 
     def _work(self, context):
         """Yields what is being done."""
-        made = []
-        for number, (piece, request) in enumerate(self._wanted, 1):
-            running = operators.SARDF_OT_bake.job = job.Job(self._sardf, request)
+        count = len(self._wanted)
+        for number, (piece, request) in enumerate(self._wanted):
+            name = f"{self._part[0]} piece {piece.code}"
+            textures = bake_plan.store_of(context.scene.sardf, name, self._plan.packed)
+            running = SARDF_OT_bake.job = job.Job(
+                self._sardf, dataclasses.replace(request, store=textures)
+            )
             while running.running:
-                share = f"{100 * running.share:.0f} %"
-                yield f"piece {number}/{len(self._wanted)} {share}"
+                if running.to_unwrap is not None and unwrap.can_unwrap(context):
+                    running.go_on(unwrap.smart(context, running.to_unwrap, request.size))
+                self._percent = 100 * (number + running.share) / count
+                yield f"baking piece {number + 1} of {count}, {100 * running.share:.0f} %"
             if isinstance(running.error, job.NothingLeft):
                 continue
             if running.error is not None:
                 raise running.error
-            made.append((piece, running.part))
-        for piece, arrays in made:
-            self._built.append((piece, arrays, {}))
-            for channel, array in arrays.maps.items():
-                name = f"{arrays.name} {channel}"
-                self._built[-1][2][channel] = images.build_packed(name, channel, array)
-                yield f"storing textures of {piece.code}"
+            self._made.append((piece, running.part))
+        yield "making objects"
         self._commit(context)
 
     def _commit(self, context):
         part = part_bake.find(self._part)
-        kept = {piece.code for piece, _, _ in self._built}
+        kept = {piece.code for piece, _ in self._made}
         for code, item in part_pieces.find(part).items():
             if code not in kept:  # the sections cut no such piece any more
                 bpy.data.objects.remove(item)
         if not any("1" not in code for code in kept):
             part_bake.place_nothing(part, self._wanted[0][0].scene)
-        built, self._built = self._built, []
-        for piece, arrays, textures in built:
-            part_pieces.place(context.scene, part, piece, arrays, textures)
-        operators.SARDF_OT_bake.job = None
-        self.report({"INFO"}, f"Baked {len(built)} pieces of {part.name}")
+        SARDF_OT_bake.job = None
+        count = len(self._made)
+        while self._made:
+            piece, arrays = self._made[0]
+            built = assemble.build_images(self._sardf, arrays, self._plan.packed)
+            part_pieces.place(context.scene, part, piece, arrays, built)
+            self._made.pop(0)
+        self.report({"INFO"}, f"Baked {count} pieces of {part.name}")
         self._result = {"FINISHED"}
 
     def _drop(self):
-        if operators.SARDF_OT_bake.job is not None:
-            operators.SARDF_OT_bake.job.cancel()
-        operators.SARDF_OT_bake.job = None
-        for _, _, textures in self._built:
-            for image in textures.values():
-                bpy.data.images.remove(image)
-        self._built = []
+        if SARDF_OT_bake.job is not None:
+            SARDF_OT_bake.job.cancel()
+        SARDF_OT_bake.job = None
+        for _, arrays in self._made:
+            arrays.store.discard()
+        self._made = []
 
     def _end(self, context):
-        operators.SARDF_OT_bake.job = None
-        context.window_manager.event_timer_remove(self._timer)
-        context.workspace.status_text_set(None)
+        SARDF_OT_bake.job = None
+        bake_operator.stop(context)
 
 
 def register():

@@ -5,10 +5,8 @@ from dataclasses import dataclass
 
 import bpy
 
-from . import core
+from . import bake_settings, core
 from .baked import job
-
-SIZES = ("256", "512", "1024", "2048", "4096", "8192")
 
 
 @dataclass
@@ -73,30 +71,17 @@ def _filepath_changed(settings, _context):
         read_summary(settings)
 
 
-class SardfSettings(bpy.types.PropertyGroup):
+class SardfSettings(bake_settings.BakeSettings, bpy.types.PropertyGroup):
     filepath: bpy.props.StringProperty(
         name="Scene File",
         description="The sardf scene file to mesh, bake and render",
         subtype="FILE_PATH",
+        options=bake_settings.MAY_BE_RELATIVE,
         update=_filepath_changed,
-    )
-    resolution: bpy.props.IntProperty(
-        name="Cells",
-        description="Cells of the mesh along the part's longest side",
-        default=128,
-        min=4,
-        max=4096,
-        soft_max=512,
-    )
-    size: bpy.props.EnumProperty(
-        name="Textures",
-        description="Texels along a side of each baked texture",
-        items=[(size, f"{size} px", f"{size} x {size} texels") for size in SIZES],
-        default="2048",
     )
     sections: bpy.props.BoolProperty(
         name="Cut Open",
-        description="Remove what the scene file's sections remove",
+        description="Remove what the sections remove",
         default=True,
     )
     tangent_attribute: bpy.props.StringProperty(

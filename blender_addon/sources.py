@@ -29,7 +29,7 @@ def part_of(options):
 
     register()
     if options.scene:
-        _open(options.scene)
+        open_file(options.scene)
     place = options.scene or bpy.data.filepath or "the opened file"
     parts = [item for item in bpy.context.scene.objects if item.sardf_part.is_part]
     used = {entry.object for part in parts for entry in part.sardf_part.entries}
@@ -66,7 +66,8 @@ def register():
         importlib.import_module(__package__).register()
 
 
-def _open(path):
+def open_file(path):
+    """Open a .blend file. Raises Stop."""
     import bpy
 
     if not Path(path).is_file():

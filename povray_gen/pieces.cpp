@@ -9,6 +9,7 @@
 
 #include "povray_gen/expression_of.hpp"
 #include "sardf/shorten.hpp"
+#include "sardf/smooth_formula.hpp"
 
 namespace sardf::povray {
 
@@ -55,7 +56,7 @@ BoundingBox grown(const BoundingBox& box, double by) {
 class Splitter {
  public:
   Splitter(const Expression& solid, const BoundingBox& bounds, const PieceOptions& options)
-      : bounds_(bounds), options_(options) {
+      : bounds_(bounds), options_(options), demand_{-options.exact_within, options.exact_within} {
     const Vec3 size = bounds.size();
     const double longest = std::max({size[0], size[1], size[2]});
     for (int axis = 0; axis < 3; ++axis) {
@@ -128,7 +129,7 @@ class Splitter {
       whole_.cells.push_back(range.lo);
       return;
     }
-    const auto shorter = std::make_shared<const Evaluator>(here.shortened());
+    const auto shorter = std::make_shared<const Evaluator>(here.shortened(demand_));
     CellRange low = range, high = range;
     low.hi[longest] = high.lo[longest] = (range.lo[longest] + range.hi[longest]) / 2;
     find_cells(low, shorter);
@@ -173,7 +174,8 @@ class Splitter {
     if (out.cells.empty()) return out;
     out.range = range_of(out.cells);
     const BoundingBox box = grown(box_of(out.range), options_.overlap + options_.reach);
-    out.field = std::make_shared<const Evaluator>(Shortening(*region.field, box).shortened());
+    out.field =
+        std::make_shared<const Evaluator>(Shortening(*region.field, box).shortened(demand_));
     return out;
   }
 
@@ -219,6 +221,7 @@ class Splitter {
 
   BoundingBox bounds_;
   const PieceOptions& options_;
+  Demand demand_;
   Index count_{};
   Region whole_;
   std::unordered_map<const Operation*, double> steps_;
@@ -230,11 +233,12 @@ namespace {
 
 // Cuts off what is steep far from the surface, where that makes the bound much smaller. False: the
 // piece has no surface at all.
-bool cut_off(Piece& piece, const Evaluator& field, double steps, double whole_gradient) {
+bool cut_off(Piece& piece, double steps, double whole_gradient) {
   const double band = band_share * piece.box.diagonal();
   const int boxes = int(std::clamp(band_steps / steps, 50.0, 10'000.0));
   const double known = std::min(piece.gradient, whole_gradient);
-  const std::optional<double> bound = band_lipschitz_bound(field, piece.box, band, boxes);
+  const Evaluator bounded(with_smooth_bounds(piece.solid));
+  const std::optional<double> bound = band_lipschitz_bound(bounded, piece.box, band, boxes);
   if (!bound) return false;
   if (*bound * steeper_off_surface < known) {
     piece.gradient = *bound;
@@ -259,7 +263,7 @@ std::vector<Piece> pieces_of(const Expression& solid, const BoundingBox& bounds,
       piece.gradient = lipschitz_bound(*region.field, piece.box, lipschitz_boxes);
     }
     const double steps = splitter.steps_of(*region.field);
-    const bool has_surface = cut_off(piece, *region.field, steps, options.gradient);
+    const bool has_surface = cut_off(piece, steps, options.gradient);
     if (has_surface || regions.size() == 1) out.push_back(std::move(piece));
   }
   if (out.empty()) out.push_back({bounds, solid});

@@ -2,6 +2,9 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <charconv>
+#include <cstring>
 #include <filesystem>
 #include <sstream>
 #include <utility>
@@ -58,7 +61,7 @@ std::vector<std::string> command(const std::string& scene, const std::string& im
                                                           {"+W", std::to_string(options.width)},
                                                           {"+H", std::to_string(options.height)},
                                                           {"+WT", std::to_string(options.threads)}};
-  std::vector<std::string> out{find_povray()};
+  std::vector<std::string> out{find_povray(options.program)};
   for (const auto& [option, value] : settings) out.push_back(std::string(option).append(value));
   out.insert(out.end(), {format, "-D"});
   if (options.alpha) out.push_back("+UA");
@@ -81,8 +84,8 @@ struct Remover {
 
 }  // namespace
 
-std::string find_povray() {
-  const std::string path = find_program("povray", "POVRAY");
+std::string find_povray(const std::string& named) {
+  const std::string path = named.empty() ? find_program("povray", "POVRAY") : find_program(named);
   if (!path.empty() && ::access(path.c_str(), X_OK) == 0) return path;
   throw Failure(
       std::string("POV-Ray 3.7 was not found; install it (Debian: apt install povray) or ") +
@@ -109,6 +112,16 @@ std::string complaint_in(const std::string& messages) {
   return "";
 }
 
+double share_in(const std::string& messages) {
+  const size_t end = messages.rfind("%)");
+  const size_t begin = end == std::string::npos ? end : messages.rfind("pixels (", end);
+  if (begin == std::string::npos) return 0;
+  double percent = 0;
+  const char* first = messages.data() + begin + std::strlen("pixels (");
+  std::from_chars(first, messages.data() + end, percent);
+  return std::clamp(percent / 100, 0.0, 1.0);
+}
+
 void render(const std::string& scene, const std::string& image, const RunOptions& options,
             const std::function<std::string(const std::string&)>& check) {
   if (options.width < 1 || options.height < 1) {
@@ -129,7 +142,7 @@ void render(const std::string& scene, const std::string& image, const RunOptions
   const Remover state{fs::path(temporary.path).replace_extension(".pov-state")};
   const ProcessResult result =
       run_process(command(source.filename().string(), name, options),
-                  {source.parent_path().string(), options.timeout, options.progress});
+                  {source.parent_path().string(), options.timeout, options.progress, share_in});
   if (result.timed_out) {
     throw Failure("POV-Ray was stopped after " + std::to_string(int(options.timeout)) + " s",
                   scene);

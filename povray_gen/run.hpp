@@ -22,8 +22,9 @@ struct RunOptions {
   int threads = 1;
   /// Seconds after which the render is given up; 0: never.
   double timeout = 0;
-  /// Asked every 0.05 s whether to go on.
+  /// Asked every 0.05 s whether to go on, with the share of pixels that POV-Ray says are done.
   Progress progress = {};
+  std::string program = {};  ///< path of POV-Ray; empty: what find_povray finds
 };
 
 /// Renders `scene`, a .pov file that may include files of its folder, to `image`, whose folder must
@@ -41,7 +42,12 @@ void render(const std::string& scene, const std::string& image, const RunOptions
 /// a fatal error, holes. Empty if there is none.
 std::string complaint_in(const std::string& messages);
 
-/// The path of the POV-Ray program: $POVRAY, or `povray` in PATH. Throws Error if there is none.
-std::string find_povray();
+/// The share of pixels in POV-Ray's last message that tells one, "Rendered 5 of 20 pixels (25%)";
+/// 0 before.
+double share_in(const std::string& messages);
+
+/// The path of the POV-Ray program: the one that is named, else $POVRAY, or `povray` in PATH.
+/// Throws Failure if there is none.
+std::string find_povray(const std::string& named = {});
 
 }  // namespace sardf::povray

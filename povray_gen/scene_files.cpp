@@ -2,14 +2,11 @@
 
 #include <cmath>
 #include <filesystem>
-#include <memory>
-#include <set>
 
+#include "povray_gen/pending_files.hpp"
 #include "povray_gen/run.hpp"
 #include "povray_gen/scene_text.hpp"
-#include "povray_gen/stale_files.hpp"
 #include "sardf/error.hpp"
-#include "sardf/output_file.hpp"
 
 namespace sardf::povray {
 
@@ -36,51 +33,20 @@ std::vector<std::string> write_files(const Scene& scene, const SceneFiles& files
   if (files.samples < 8 || files.samples > 512) {
     throw Error("samples is " + std::to_string(files.samples) + "; 8 to 512 is accepted");
   }
-  const SceneDescription& d = scene.description();
-  PovrayScene text;
-  const std::string stem = fs::path(files.path).stem();
-  text.title = d.title.empty() ? stem : d.title;
-  text.solid = scene.drawn();
-  text.bounds = scene.bounds();
-  for (const NamedField& named : scene.fields()) {
-    text.fields.push_back({named.name, named.field.expression()});
-  }
-  const std::vector<std::string> materials = scene.material_names();
-  for (size_t i = 0; i < scene.fractions().size(); ++i) {
-    text.fractions.push_back({materials.at(i), scene.fractions()[i]});
-    text.material_colors.push_back(d.materials.at(i).color);
-  }
-  text.color = scene.base_color();
+  const fs::path include = fs::path(files.path).replace_extension(".inc");
+  PovrayScene text = povray_scene_of(scene, include.stem());
   text.camera = files.camera;
   text.width = files.width;
   text.height = files.height;
   text.look = look_of(files.look);
-  text.stated_lipschitz = d.stated_lipschitz;
-  const fs::path include = fs::path(files.path).replace_extension(".inc");
   SamplingOptions sampling;
   sampling.progress = progress;
   sampling.most_samples = std::pow(files.samples, 3);
   sampling.all_fields = files.all_fields;
-  const SceneText made = scene_text(text, include.filename(), sampling);
-  const std::vector<std::string> earlier = density_files_of(include);
-  std::set<std::string> now;
-  std::vector<std::unique_ptr<OutputFile>> written;
-  const auto begin_file = [&](const fs::path& path) -> OutputFile& {
-    written.push_back(std::make_unique<OutputFile>(path));
-    return *written.back();
-  };
-  for (const SampledPointer& sampled : made.sampled) {
-    const fs::path file = include.parent_path() / sampled->file();
-    sampled->samples().write_to(begin_file(file), progress);
-    now.insert(file);
-  }
-  begin_file(include).write(made.include);
-  begin_file(files.path).write(made.scene);
-  for (const auto& file : written) file->commit();
-  for (const std::string& file : earlier) {
-    std::error_code left_over;  // does no harm
-    if (!now.contains(file)) fs::remove(file, left_over);
-  }
+  PendingFiles pending;
+  const SceneText made = pending.add(text, include, sampling);
+  pending.add(files.path, made.scene);
+  pending.commit();
   return made.sentences;
 }
 

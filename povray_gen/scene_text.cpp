@@ -40,13 +40,6 @@ void check_bounds(const BoundingBox& bounds) {
   }
 }
 
-std::string one_line(std::string text) {
-  for (char& c : text) {
-    if (c == '\n' || c == '\r') c = ' ';
-  }
-  return text;
-}
-
 // A pigment of three functions. POV-Ray 3.7 has none, but the average of three pigments that are
 // pure red, green and blue, three times as bright. Values just beyond [0, 1] would wrap around.
 std::string three_function_pigment(const std::string& name,

@@ -8,6 +8,13 @@ std::string vector_text(const Vec3& v) {
   return out.append(">");
 }
 
+std::string one_line(std::string text) {
+  for (char& c : text) {
+    if (c == '\n' || c == '\r') c = ' ';
+  }
+  return text;
+}
+
 std::string filled(const std::string& pattern, std::initializer_list<std::string> words) {
   std::string out;
   auto word = words.begin();

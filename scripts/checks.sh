@@ -58,6 +58,17 @@ check_cpp_format() {
     xargs -0 clang-format-16 --dry-run -Werror
 }
 
+# Prints how the speed of three short benchmarks changed since SARDF_BASE, or else since the last
+# commit of an earlier day. A report: nothing of it counts, and it is given up after four minutes.
+report_speed() {
+  local base=${SARDF_BASE:-$(git rev-list -1 --before="$(git log -1 --format=%cs) 00:00" HEAD)}
+  if [ -z "$base" ]; then
+    echo "speed                  not compared: there is no earlier commit"
+  elif step "speed" timeout 240 bench/compare --rounds 3 "$base"; then
+    grep -v '^round' "$logs/speed.log" | sed 's/^/    /'
+  fi
+}
+
 # end_checks REPORT...: prints failures, skips with their reasons, and the closing line; exits with 1
 # if anything failed.
 end_checks() {

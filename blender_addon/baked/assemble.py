@@ -2,12 +2,12 @@
 """From one made part to a Blender object with mesh, material and images."""
 
 import bpy
-import numpy as np
 from mathutils import Vector
 
 from . import images, material, mesh_data
 
 SOURCE = "sardf_source"  # custom property: the scene file that an object was baked from
+DENSITY = "sardf_texels_per_unit"  # custom property: of the textures that were baked
 UNITS = {
     "um": ("METRIC", "MICROMETERS"),
     "mm": ("METRIC", "MILLIMETERS"),
@@ -26,49 +26,80 @@ def set_units(scene, part_scene):
     settings.scale_length = part_scene.metres_per_unit
 
 
-def build_images(part):
-    """One float image for each baked channel, as {channel: image}."""
-    return {
-        channel: images.build(f"{part.name} {channel}", channel, array)
-        for channel, array in part.maps.items()
-    }
-
-
-def glows(part):
-    return bool(np.any(part.maps["emission"] > 0)) if "emission" in part.maps else False
+def build_images(sardf, part, packed=True, keep=False):
+    """One image for each baked texture, as {name: image}; publishes the part's files, and removes
+    them where the .blend keeps them, unless they are to be kept besides. Raises StoreError."""
+    paths = part.store.publish(part.maps)
+    built = {}
+    for name, path in paths.items():
+        built[name] = images.load(path, f"{part.name} {name}", sardf.is_color(name), packed)
+        if packed and not keep:
+            path.unlink()
+    return built
 
 
 NEW = "new"  # in place of an earlier object: make another
 
 
-def place(scene, part, built, earlier=None):
+def place(scene, part, built, earlier=None, layer=mesh_data.LAYER):
     """The object of `part` in `scene`: a new one, or our earlier one with its content renewed.
 
     An earlier object is given, or else known by its SOURCE property. It keeps its place, modifiers
-    and its material's other nodes; mesh and images are replaced.
+    and its material's other nodes; mesh and images are replaced. Of a given mesh only attributes
+    and material change, and `layer` is its UV map.
     """
-    mesh = mesh_data.build(part.name, part.mesh, part.fractions, part.scene.materials)
-    names = mesh_data.set_attributes(mesh, part.attributes)
-    old_images = [i for i in bpy.data.images if i.get(SOURCE) == part.source]
-    read = {channel: image for channel, image in built.items() if channel in material.READ}
     item = find(scene, part.source) if earlier is None else earlier
-    if item in (None, NEW):
-        item = bpy.data.objects.new(part.name, mesh)
-        item[SOURCE] = part.source
-        scene.collection.objects.link(item)
-        old_mesh, kept = None, []
+    old_images = [i for i in bpy.data.images if i.get(SOURCE) == part.source]
+    old_mesh = None
+    if part.given:
+        mesh = item.data
     else:
-        old_mesh, kept = item.data, list(filter(None, item.data.materials))
-    for each in kept or [material.build(part.name, read)]:
-        mesh.materials.append(each)
-        material.assign_images(each, read, glows(part))
-        material.set_normal_map(each, built.get(material.NORMAL))
-        material.set_tangent(each, names.get(part.tangent, ""))
+        mesh = mesh_data.build(part.name, part.mesh)
+        if item in (None, NEW):
+            item = bpy.data.objects.new(part.name, mesh)
+            scene.collection.objects.link(item)
+        else:
+            old_mesh = item.data
+            for each in filter(None, old_mesh.materials):
+                mesh.materials.append(each)
+    if not part.given or SOURCE in item:  # another object is the user's: no bake may renew it
+        item[SOURCE] = part.source
+        item[DENSITY] = part.texels_per_unit
+    mesh_data.forget_attributes(mesh)
+    names = mesh_data.set_fractions(mesh, part.fractions, part.scene.materials)
+    made = mesh_data.set_attributes(mesh, part.attributes)
+    content = material.Content(
+        images=built,
+        materials=part.scene.materials,
+        fractions=names,
+        attributes=[name for each in made.values() for name in each],
+        tangent=made[part.tangent][0] if part.tangent in made else "",
+        layer=layer,
+        glows=part.glows,
+        osl=part.osl,
+    )
+    mesh_data.remember_attributes(mesh, [*content.fractions, *content.attributes])
+    _update_materials(mesh, part, content)
     item.data = mesh
     _forget(old_mesh, old_images)
-    mesh.name = part.name  # it was taken while the earlier mesh was there
+    if not part.given:
+        mesh.name = part.name  # it was taken while the earlier mesh was there
     _label(part, built)
     return item
+
+
+def _update_materials(mesh, part, content):
+    """Our materials in the mesh's slots, or a new one; it comes after the user's own."""
+    ours = [each for each in filter(None, mesh.materials) if material.is_ours(each)]
+    if not ours:
+        ours = [material.build(part.name)]
+        if len(mesh.materials):
+            part.warnings.append(
+                f"the mesh has materials of its own; the baked one, '{ours[0].name}', is its last"
+            )
+        mesh.materials.append(ours[0])
+    for each in ours:
+        material.update(each, content)
 
 
 def _forget(old_mesh, old_images):
@@ -81,13 +112,12 @@ def _forget(old_mesh, old_images):
 
 
 def _label(part, built):
-    """Name the images, remember what they show, and keep those that no material reads."""
+    """Name the images, and remember what they show."""
     for channel, image in built.items():
         image.name = f"{part.name} {channel}"
         image[SOURCE] = part.source
-        image.use_fake_user = channel not in material.READ
-        if channel.startswith("fractions_"):  # three materials each, in red, green, blue
-            first = 3 * (int(channel.split("_")[1]) - 1)
+        if channel.startswith(material.FRACTIONS):  # three materials each, in red, green, blue
+            first = 3 * (int(channel.removeprefix(material.FRACTIONS)) - 1)
             image["sardf_materials"] = ", ".join(part.scene.materials[first : first + 3])
 
 

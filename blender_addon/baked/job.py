@@ -3,15 +3,34 @@
 
 import json
 import threading
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+
+import numpy as np
+
+from . import store
 
 CHANNELS = ("base_color", "roughness", "metallic", "emission", "fractions")
 NORMAL_MAP = "normal"  # a channel more: the solid's normals in the mesh's tangent space
 GRAIN = "grain_direction"  # the attribute that directs metal's reflections unless one is named
 CHECKED = 64  # cells along each side where it is looked for what sections leave
-MESH_SHARE = 0.4  # of the time, for the progress bar: meshing took 0.2 to 0.6 of it on our scenes
+SHARES = (0.4, 0.4, 0.2)  # of the time for mesh, textures and files, where nothing was measured
+PER_IMAGE = 3  # components of a channel that one image holds
+ATLAS, SMART, GIVEN = "atlas", "smart", "given"  # where texture coordinates come from
+POLL_SECONDS = 0.02
+
+
+@dataclass(frozen=True)
+class GivenMesh:
+    """A mesh with texture coordinates that is baked as it is: arrays as sardf.Mesh has them, in
+    the scene's frame, and what it is called."""
+
+    name: str
+    vertices: Any
+    faces: Any
+    normals: Any
+    uv: Any
 
 
 @dataclass(frozen=True)
@@ -20,6 +39,9 @@ class Request:
 
     `path`: the scene file, or with `scene`, the dictionary that one holds, what the scene is known
     by. `tangent`: the attribute along which metal is brushed, "" for GRAIN in a scene that has it.
+    `channels`: names as sardf.Scene.bake takes them. `uv`: ATLAS, SMART or GIVEN, which `given`
+    then is. `store`: where textures are written; None: they stay arrays. `shares`: of the time, as
+    SHARES. `osl`: also make a shader of the channels.
     """
 
     path: str
@@ -29,14 +51,23 @@ class Request:
     channels: tuple = CHANNELS
     tangent: str = ""
     scene: dict | None = None
+    uv: str = ATLAS
+    given: GivenMesh | None = None
+    store: Any = None
+    shares: tuple = SHARES
+    osl: bool = False
 
 
 @dataclass
 class Part:
-    """The made arrays: `mesh` and `maps` as sardf returns them, fractions (vertices, materials).
+    """The made arrays: `mesh` as sardf returns it, fractions (vertices, materials).
 
-    `attributes`: {name: (vertices,) or (vertices, components)}; `tangent`: the one along which
-    metal is brushed, or "".
+    `maps`: {image: (size, size, 1 to 3) array}, or None in place of the array where it was written
+    to `store`. `glows`: whether anything emits light. `attributes`: {name: (vertices,) or
+    (vertices, components)}; `tangent`: the one along which metal is brushed, or "". `osl`: the text
+    of a shader and {its output: what it is}, or None. `warnings`: sentences about what is made
+    otherwise than asked for. `given`: the mesh was; `whole`: the scene's sections were not cut;
+    `document`: the Request's scene.
     """
 
     name: str
@@ -47,16 +78,18 @@ class Part:
     fractions: Any
     attributes: dict
     tangent: str
-    whole: bool = False  # the scene's sections were not cut
-    given: dict | None = None  # the Request's scene
+    glows: bool
+    texels_per_unit: float
+    given: bool = False
+    whole: bool = False
+    document: dict | None = None
+    store: Any = None
+    osl: tuple | None = None
+    warnings: list = field(default_factory=list)
 
 
 class NothingLeft(Exception):
     """The scene's sections remove all of it, said in one sentence."""
-
-
-def name_of(scene, request):
-    return scene.title or Path(request.path).stem
 
 
 def leaves_nothing(scene):
@@ -68,59 +101,150 @@ def leaves_nothing(scene):
     return bool(samples["field"].max() < 0)
 
 
-def make_part(sardf, request, progress=None):
-    """Mesh, bake and evaluate the scene of `request`.
+def make_part(sardf, request, progress=None, unwrap=None):
+    """Mesh, bake and evaluate the scene of `request`, and write its textures.
 
     `progress(share)` is called with the share done in [0, 1] and returns False to cancel; then
-    sardf.Cancelled is raised. Raises sardf.Error for what is wrong in the scene, and NothingLeft.
+    sardf.Cancelled is raised, and nothing stays in `store`. `unwrap(mesh)` gives (4 faces, 2)
+    texture coordinates, for SMART. Raises sardf.Error for what is wrong in the scene or with a UV
+    map, StoreError, and NothingLeft.
     """
-
-    def between(start, stop):
-        if progress is None:
-            return None
-        return lambda share: progress(start + (stop - start) * share)
-
-    if request.scene is None:
-        scene = sardf.load(request.path)
-    else:
-        scene = sardf.Scene.from_json(json.dumps(request.scene), {}, between(0.0, 0.0))
-    tangent = tangent_of(scene, request.tangent)
     try:
-        mesh = scene.mesh(
-            resolution=request.resolution,
-            sections=request.sections,
-            size=request.size,
-            progress=between(0.0, MESH_SHARE),
+        return _make_part(sardf, request, progress or (lambda share: True), unwrap)
+    except BaseException as error:
+        if request.store is not None:
+            request.store.discard()
+        if isinstance(error, OSError):
+            place = request.store.folder if request.store is not None else request.path
+            raise store.failure(place, error) from error
+        raise
+
+
+def _make_part(sardf, request, progress, unwrap):
+    whole = sum(request.shares)
+    ends = [sum(request.shares[: k + 1]) / whole for k in range(3)]
+    scene, channels, warnings = _scene_of(sardf, request, _between(progress, 0.0, 0.0))
+    tangent = tangent_of(scene, request.tangent)
+    shader = None
+    if request.osl:
+        shader = _shader_of(sardf, scene, channels, warnings)
+    if request.store is not None:
+        request.store.open()
+        request.store.check(image_names(scene.image_components(channels)))
+    mesh = _mesh_of(sardf, request, scene, unwrap, _between(progress, 0.0, ends[0]))
+    if request.uv != ATLAS:
+        warnings += sardf.check_uv_map(
+            scene, mesh, request.size, request.sections, _between(progress, ends[0], ends[0])
         )
-    except sardf.Cancelled:
-        raise
-    except sardf.Error:
-        if request.sections and leaves_nothing(scene):
-            raise NothingLeft(
-                f"the sections leave nothing of '{name_of(scene, request)}'"
-            ) from None
-        raise
-    maps = scene.bake(
-        mesh,
-        size=request.size,
-        channels=request.channels,
-        sections=request.sections,
-        progress=between(MESH_SHARE, 1.0),
-    )
+    maps = split(scene.bake(
+        mesh, size=request.size, channels=channels, sections=request.sections,
+        progress=_between(progress, ends[0], ends[1]),
+    ))  # fmt: skip
+    glows = bool(np.any(maps["emission"] > 0)) if "emission" in maps else False
+    if request.store is not None:
+        _write(sardf, request.store, maps, _between(progress, ends[1], 1.0))
     vertices = mesh.vertices
-    attributes = attributes_at(scene, vertices)
     return Part(
-        name=name_of(scene, request),
+        name=_name_of(scene, request),
         source=str(request.path),
         scene=scene,
         mesh=mesh,
         maps=maps,
         fractions=scene.fractions(vertices),
-        attributes=attributes,
+        attributes=attributes_at(scene, vertices),
         tangent=tangent,
+        glows=glows,
+        texels_per_unit=sardf.texels_per_unit(mesh, request.size),
+        given=request.uv == GIVEN,
         whole=not request.sections,
-        given=request.scene,
+        document=request.scene,
+        store=request.store,
+        osl=shader,
+        warnings=warnings,
     )
+
+
+def _name_of(scene, request):
+    return scene.title or Path(request.path).stem
+
+
+def _between(progress, start, stop):
+    return lambda share: progress(start + (stop - start) * share)
+
+
+def _scene_of(sardf, request, progress):
+    """The scene, the names of `channels` that it has, and a warning for the others."""
+    if request.scene is None:
+        scene = sardf.load(request.path, progress)
+    else:
+        scene = sardf.Scene.from_json(json.dumps(request.scene), {}, progress)
+    known = scene.channels()
+    channels = [name for name in request.channels if name in known]
+    missing = [name for name in request.channels if name not in known]
+    if not channels:
+        scene.bake(sardf.Mesh(), channels=missing or [""])  # says which there are
+    warnings = [f"left out: {', '.join(missing)}, of which this scene has nothing"]
+    return scene, channels, warnings if missing else []
+
+
+def _shader_of(sardf, scene, channels, warnings):
+    """(text, outputs) of an OSL shader; None, and a warning, where something has no formula."""
+    try:
+        return scene.osl([name for name in channels if name != NORMAL_MAP])
+    except sardf.Error as error:
+        warnings.append(f"no exact shading: {error}")
+        return None
+
+
+def _mesh_of(sardf, request, scene, unwrap, progress):
+    if request.uv == GIVEN:
+        mesh = sardf.Mesh()
+        for name in ("vertices", "faces", "normals", "uv"):
+            setattr(mesh, name, getattr(request.given, name))
+        return mesh
+    size = request.size if request.uv == ATLAS else 0  # 0: without texture coordinates
+    try:
+        mesh = scene.mesh(
+            resolution=request.resolution, sections=request.sections, size=size, progress=progress
+        )
+    except sardf.Error:
+        if request.sections and leaves_nothing(scene):
+            name = _name_of(scene, request)
+            raise NothingLeft(f"the sections leave nothing of '{name}'") from None
+        raise
+    if request.uv == SMART:
+        mesh.uv = unwrap(mesh)
+    return mesh
+
+
+def image_names(components):
+    """{image: (channel, first component)} of {channel: its number of components}: more than
+    PER_IMAGE of them become an image for each three, name_1, name_2, ..."""
+    names = {}
+    for name, count in components.items():
+        if count <= PER_IMAGE:
+            names[name] = (name, 0)
+            continue
+        for number, first in enumerate(range(0, count, PER_IMAGE), 1):
+            names[f"{name}_{number}"] = (name, first)
+    return names
+
+
+def split(maps):
+    """{image: array of 1 to 3 components} of {channel: array}."""
+    names = image_names({name: array.shape[2] for name, array in maps.items()})
+    return {
+        image: maps[name][..., first : first + PER_IMAGE] for image, (name, first) in names.items()
+    }
+
+
+def _write(sardf, target, maps, progress):
+    """Write the arrays as files, and let go of each."""
+    names = list(maps)
+    for place, name in enumerate(names):
+        part = _between(progress, place / len(names), (place + 1) / len(names))
+        sardf.write_exr(target.path(name), maps[name], part)
+        maps[name] = None
 
 
 def attributes_at(scene, points):
@@ -156,7 +280,8 @@ class Job:
     """make_part in a worker thread that the user interface polls.
 
     `share` is the progress, `running` tells whether the thread is at work; afterwards exactly one
-    of `part`, `error` and `cancelled` is set.
+    of `part`, `error` and `cancelled` is set. `to_unwrap` is the mesh that waits for `go_on` with
+    its texture coordinates, or None.
     """
 
     def __init__(self, sardf, request):
@@ -164,7 +289,12 @@ class Job:
         self.part = None
         self.error = None
         self.cancelled = False
+        self.to_unwrap = None
+        self._uv = None
+        self._cancelled = sardf.Cancelled
+        self._ending = threading.Lock()
         self._stop = threading.Event()
+        self._answered = threading.Event()
         self._thread = threading.Thread(target=self._run, args=(sardf, request), daemon=True)
         self._thread.start()
 
@@ -173,19 +303,40 @@ class Job:
         return self._thread.is_alive()
 
     def cancel(self):
-        """Ask the thread to stop; it does so within 0.1 s."""
-        self._stop.set()
+        """Ask the thread to stop; it does so within 0.1 s. What it made is dropped."""
+        with self._ending:
+            self._stop.set()
+            if self.part is not None and self.part.store is not None:
+                self.part.store.discard()
+
+    def go_on(self, uv):
+        """Give the texture coordinates of `to_unwrap`."""
+        self.to_unwrap, self._uv = None, uv
+        self._answered.set()
 
     def _run(self, sardf, request):
         try:
-            part = make_part(sardf, request, self._progress)
+            part = make_part(sardf, request, self._progress, self._unwrap)
         except sardf.Cancelled:
             self.cancelled = True
         except Exception as error:  # shown by the operator, which polls: nothing is swallowed
             self.error = error
         else:
-            self.part = part
+            with self._ending:
+                if not self._stop.is_set():
+                    self.part = part
+                    return
+            self.cancelled = True  # when nothing was left to stop
+            if part.store is not None:
+                part.store.discard()
 
     def _progress(self, share):
         self.share = share
         return not self._stop.is_set()
+
+    def _unwrap(self, mesh):
+        self.to_unwrap = mesh
+        while not self._answered.wait(POLL_SECONDS):
+            if self._stop.is_set():
+                raise self._cancelled
+        return self._uv

@@ -9,17 +9,17 @@ works without a window, too.
 
 import dataclasses
 import uuid
+from pathlib import Path
 
 import bpy
 from mathutils import Matrix
 
 from .. import core
-from ..baked import assemble, job
+from ..baked import assemble, job, store
 from . import part_now, part_scene
 from .part_error import PartError
 
 MARK = "sardf_mark"  # custom property of a baked object: part_now.mark_of the scene that it shows
-KEEPS = "sardf image of "  # custom properties of a baked object, each with a channel's image
 
 
 def request_of(part, settings, depsgraph):
@@ -49,29 +49,28 @@ def find(key):
     return part
 
 
-def placed(scene, made, built, earlier):
-    """The mesh object of a bake: a new one, or the `earlier` one renewed."""
-    for key in [key for key in (earlier or {}).keys() if key.startswith(KEEPS)]:  # noqa: SIM118
-        del earlier[key]
-    item = assemble.place(scene, made, built, earlier or assemble.NEW)
-    for channel, image in built.items():
-        if image.use_fake_user:  # no material reads it: the object does, so that both go together
-            item[KEEPS + channel] = image
-            image.use_fake_user = False
-    return item
-
-
 def place(scene, part, made, built):
     """The mesh object of a baked part under its Empty: a new one, or the earlier one renewed."""
-    item = placed(scene, made, built, _baked(part))
+    item = assemble.place(scene, made, built, baked_of(part) or assemble.NEW)
     if item.parent != part:
         item.name = f"{part.name} baked"
         item.parent = part
         item.matrix_parent_inverse = Matrix.Identity(4)
+        put_beside(part, item)
     if part.library is None:
         part.sardf_part.baked = item
-    item[MARK] = "" if made.given is None else _mark(made.given, made.whole)
+    item[MARK] = "" if made.document is None else _mark(made.document, made.whole)
     return item
+
+
+def put_beside(part, item):
+    """Move an object that was just made into the collection that holds the part."""
+    home = next((each for each in part.users_collection if each.library is None), None)
+    if home is None or item.name in home.objects:
+        return
+    for other in item.users_collection:
+        other.objects.unlink(item)
+    home.objects.link(item)
 
 
 def _mark(scene, whole):
@@ -83,7 +82,7 @@ def _mark(scene, whole):
 def place_nothing(part, scene):
     """Where the sections of a part's `scene` leave nothing: an earlier baked object is emptied. It
     keeps its material. Returns it, or None where there is none."""
-    item = _baked(part)
+    item = baked_of(part)
     if item is None:
         return None
     materials = list(item.data.materials)
@@ -96,18 +95,18 @@ def place_nothing(part, scene):
 
 def is_baked(part):
     """Whether the part has a baked object."""
-    return _baked(part) is not None
+    return baked_of(part) is not None
 
 
 def mark_of(part):
     """The MARK of the part's baked object, or ""."""
-    item = _baked(part)
+    item = baked_of(part)
     return "" if item is None else item.get(MARK, "")
 
 
 def is_seen(part):
     """Whether the part's baked object is visible, and stands where the part does."""
-    item = _baked(part)
+    item = baked_of(part)
     if item is None or not item.visible_get():
         return False
     return item.matrix_basis == item.matrix_parent_inverse == Matrix.Identity(4)
@@ -123,18 +122,19 @@ def rebake_frames(context, part, frames, channels=job.CHANNELS):
         scene.frame_set(frame)
         part = find(key)
         request, _ = request_of(part, scene.sardf, context.evaluated_depsgraph_get())
-        request = dataclasses.replace(request, channels=tuple(channels))
+        textures = store.Store(Path(bpy.app.tempdir) / "sardf frame", replace=True)
+        request = dataclasses.replace(request, channels=tuple(channels), store=textures)
         try:
             made = job.make_part(sardf, request)
         except job.NothingLeft:
             item = place_nothing(part, request.scene)
         else:
-            item = place(scene, part, made, assemble.build_images(made))
+            item = place(scene, part, made, assemble.build_images(sardf, made))
         context.view_layer.update()
         yield frame, item
 
 
-def _baked(part):
+def baked_of(part):
     """The object that an earlier bake of this very part made, or None.
 
     A copy of a part may still point to the original's.
@@ -147,5 +147,5 @@ def _baked(part):
 
 def _source(part):
     """The text that marks what was baked of a part."""
-    baked = _baked(part)
+    baked = baked_of(part)
     return baked[assemble.SOURCE] if baked is not None else f"sardf part {uuid.uuid4().hex}"

@@ -102,7 +102,6 @@ class SARDF_PT_part(_Panel, bpy.types.Panel):
         row = layout.row(align=True)
         row.operator("sardf.part_export", text="Export", icon="EXPORT")
         row.operator("sardf.part_check", text="Check", icon="CHECKMARK")
-        layout.operator("sardf.bake", text="Bake Part", icon="TEXTURE")
         if part_bake.is_baked(part):
             layout.prop(part.sardf_part, "show")
         status = part_status.status(part, context.evaluated_depsgraph_get())

@@ -6,6 +6,7 @@ import itertools
 
 from mathutils import Matrix, Vector
 
+from ..baked import assemble
 from . import part_bake, part_scene
 from .part_error import PartError
 
@@ -56,16 +57,14 @@ def _other_side(section):
     return {"remove": {"complement": {"field": removed}}}
 
 
-def requests_of(part, settings, depsgraph):
-    """([(Piece, job.Request), ...], warnings) for a part with the panel's settings. Raises
-    PartError."""
-    request, warnings = part_bake.request_of(part, settings, depsgraph)
+def requests_of(part, request, depsgraph):
+    """[(Piece, job.Request), ...] for a part and the Request of all of it. Raises PartError."""
     made = []
     for piece in pieces_of(part, part_scene.read(part, depsgraph)):
         path = request.path if "1" not in piece.code else f"{request.path} piece {piece.code}"
         made.append((piece, dataclasses.replace(
             request, path=path, scene=piece.scene, sections=True)))  # fmt: skip
-    return made, warnings
+    return made
 
 
 def shift_of(piece, depsgraph):
@@ -82,12 +81,13 @@ def place(scene, part, piece, made, built):
     if "1" not in piece.code:
         return part_bake.place(scene, part, made, built)
     earlier = find(part).get(piece.code)
-    item = part_bake.placed(scene, made, built, earlier)
+    item = assemble.place(scene, made, built, earlier or assemble.NEW)
     if earlier is None:
         item[PIECE] = piece.code
         item.name = f"{part.name} piece {piece.code}"
         item.parent = part
         item.matrix_parent_inverse = Matrix.Identity(4)
+        part_bake.put_beside(part, item)
     _follow(item, piece.moves)
     return item
 

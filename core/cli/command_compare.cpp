@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.hpp"
-#include "cli/compare_images.hpp"
+#include "cli/compare_json.hpp"
 #include "cli/compare_report.hpp"
 #include "cli/picture_size.hpp"
 #include "cli/render_blender.hpp"
@@ -15,6 +15,7 @@
 #include "cli/write_text.hpp"
 #include "povray_gen/run.hpp"
 #include "sardf/camera_file.hpp"
+#include "sardf/compare_images.hpp"
 #include "sardf/error.hpp"
 #include "sardf/scene_file.hpp"
 

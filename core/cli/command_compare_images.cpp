@@ -9,9 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "cli/compare_images.hpp"
+#include "cli/compare_json.hpp"
 #include "cli/compare_report.hpp"
 #include "cli/write_text.hpp"
+#include "sardf/compare_images.hpp"
 #include "sardf/error.hpp"
 
 namespace sardf {

@@ -18,6 +18,7 @@ void add_eval(CLI::App& app);
 void add_mesh(CLI::App& app);
 void add_bake(CLI::App& app);
 void add_povray(CLI::App& app);
+void add_stage(CLI::App& app);
 void add_render(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_solve(CLI::App& app);

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "cli/compare_images.hpp"
+#include "sardf/compare_images.hpp"
 #include "sardf/image_file.hpp"
 
 namespace sardf {

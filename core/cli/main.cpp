@@ -64,6 +64,7 @@ int main(int count, char** arguments) {
   sardf::add_mesh(app);
   sardf::add_bake(app);
   sardf::add_povray(app);
+  sardf::add_stage(app);
   sardf::add_render(app);
   sardf::add_compare(app);
   sardf::add_compare_images(app);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "cli/compare_images.hpp"
+#include "sardf/compare_images.hpp"
 
 namespace sardf {
 

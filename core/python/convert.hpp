@@ -20,6 +20,8 @@ void bind_scenes(py::module_& m);
 void bind_meshes(py::module_& m);
 /// What scenes give for previews; after bind_scenes.
 void bind_volume_samples(py::module_& m);
+/// What bakes need besides; after bind_scenes.
+void bind_baking(py::module_& m);
 
 /// A Field, a number, or a formula's text as a field; Error naming the parameter otherwise.
 Field field_from(const py::handle& value, const std::string& parameter);

@@ -1,6 +1,7 @@
 // sardf._core: the compiled core as a Python module. It links no image library, so that it can live
 // inside Blender, which has its own.
 #include "convert.hpp"
+#include "stages.hpp"
 
 PYBIND11_MODULE(_core, m) {
   m.doc() = "Heterogeneous solids by distances: the compiled core.";
@@ -11,4 +12,6 @@ PYBIND11_MODULE(_core, m) {
   sardf::bind_meshes(m);
   sardf::bind_scenes(m);
   sardf::bind_volume_samples(m);
+  sardf::bind_stages(m);
+  sardf::bind_baking(m);
 }

@@ -1,12 +1,16 @@
 #include "sardf/bake_channels.hpp"
 
+#include <algorithm>
+
 #include "sardf/error.hpp"
+#include "sardf/inverse_shares.hpp"
 
 namespace sardf {
 
 namespace {
 
 constexpr size_t per_image = 3;
+constexpr const char* density = "density";
 
 std::vector<Expression> components_of(const std::array<Expression, 3>& color) {
   return {color.begin(), color.end()};
@@ -39,14 +43,59 @@ bool append_attribute(const Scene& scene, const std::string& name,
   return false;
 }
 
+std::string doc_of_common(const std::string& name) {
+  if (name == "base_color") return "the materials' colours, mixed by the fractions; linear";
+  if (name == "roughness") return "the materials' roughness, 0 to 1";
+  if (name == "metallic") return "how far the materials are metal, 0 to 1";
+  if (name == "emission") return "the light that the materials give off; linear, unbounded";
+  if (name == "fractions") return "the materials' volume fractions as masks, three in an image";
+  if (name == "field") return "the solid's field, positive inside; 0 on the surface";
+  return "the solid's normals in the mesh's tangent space: a normal map";
+}
+
+bool states_density(const Scene& scene) {
+  const std::vector<Material>& materials = scene.description().materials;
+  return !materials.empty() && std::all_of(materials.begin(), materials.end(),
+                                           [](const Material& m) { return m.density.has_value(); });
+}
+
+// An attribute of that name comes first: it is what the scene means by the word.
+bool has_density(const Scene& scene) {
+  const std::vector<Attribute>& attributes = scene.description().attributes;
+  return states_density(scene) &&
+         std::none_of(attributes.begin(), attributes.end(),
+                      [](const Attribute& attribute) { return attribute.name == density; });
+}
+
+// In g/cm³, where every material states it.
+Expression density_of(const Scene& scene) {
+  std::vector<double> factors;
+  for (const Material& m : scene.description().materials) factors.push_back(*m.density);
+  return weighted_sum(scene.fractions(), factors);
+}
+
+std::string doc_of(const Attribute& attribute) {
+  const size_t n = attribute.components.size();
+  std::string doc = n == 1 ? "attribute: a number" : "attribute: " + std::to_string(n) + " numbers";
+  if (!attribute.component_names.empty()) doc += ", an image for each";
+  return attribute.unit.empty() ? doc : doc + "; in " + attribute.unit;
+}
+
 }  // namespace
 
 std::vector<std::string> channel_names(const Scene& scene) {
-  std::vector<std::string> names(common_channels.begin(), common_channels.end());
-  for (const Attribute& attribute : scene.description().attributes) {
-    names.push_back(attribute.name);
-  }
+  std::vector<std::string> names;
+  for (const ChannelInfo& info : channel_infos(scene)) names.push_back(info.name);
   return names;
+}
+
+std::vector<ChannelInfo> channel_infos(const Scene& scene) {
+  std::vector<ChannelInfo> infos;
+  for (const char* name : common_channels) infos.push_back({name, doc_of_common(name)});
+  if (has_density(scene)) infos.push_back({density, "the materials' density, mixed; in g/cm³"});
+  for (const Attribute& attribute : scene.description().attributes)
+    infos.push_back({attribute.name, doc_of(attribute)});
+  return infos;
 }
 
 std::vector<BakeChannel> scene_channels(const Scene& scene, const std::vector<std::string>& names) {
@@ -66,6 +115,8 @@ std::vector<BakeChannel> scene_channels(const Scene& scene, const std::vector<st
       channels.push_back({name, {}, true});
     } else if (name == "fractions") {
       append_fractions(scene, channels);
+    } else if (name == density && has_density(scene)) {
+      channels.push_back({name, {density_of(scene)}});
     } else if (!append_attribute(scene, name, channels)) {
       std::string accepted;
       for (const std::string& known : channel_names(scene)) {

@@ -31,9 +31,9 @@ CertifiedBound certified_lipschitz(const Evaluator& evaluator, const BoundingBox
 double lipschitz_bound(const Evaluator& evaluator, const BoundingBox& box,
                        int boxes = default_lipschitz_boxes);
 
-/// The same of min(band, max(-band, f)): of f where |f| <= band. Parts below 1 % of the box's
-/// diagonal are not split, since the bound stays as it is at an edge of the solid. Infinity if
-/// there is no bound; nothing where it is proven that no value lies in the band.
+/// The same of min(band, max(-band, f)): of f where |f| <= band. Parts below 1/400 of the
+/// box's diagonal are not split, since the bound stays as it is at an edge of the solid. Infinity
+/// if there is no bound; nothing where it is proven that no value lies in the band.
 std::optional<double> band_lipschitz_bound(const Evaluator& evaluator, const BoundingBox& box,
                                            double band, int boxes);
 

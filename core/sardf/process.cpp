@@ -160,7 +160,7 @@ ProcessResult run_process(const std::vector<std::string>& arguments,
   Child child(arguments, options);
   ProcessResult result;
   while (child.step(result)) {
-    if (options.progress && !options.progress(0)) {
+    if (options.progress && !options.progress(options.share ? options.share(result.errors) : 0)) {
       child.kill();
       throw Cancelled();
     }

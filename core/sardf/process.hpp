@@ -1,6 +1,7 @@
 // Other programs, run as child processes.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,9 @@ namespace sardf {
 struct ProcessOptions {
   std::string folder = {};  ///< where it runs; empty: the current folder
   double timeout = 0;       ///< seconds after which it is killed; 0: none
-  Progress progress = {};   ///< asked every 0.05 s, with 0, whether to go on
+  Progress progress = {};   ///< asked every 0.05 s whether to go on, with `share`'s answer, or 0
+  /// How far it is, in [0, 1], by all that it has written to standard error.
+  std::function<double(const std::string&)> share = {};
 };
 
 struct ProcessResult {

@@ -180,9 +180,12 @@ Shortening::Shortening(const Evaluator& evaluator, const BoundingBox& box)
 }
 
 Evaluator Shortening::shortened(Wanted wanted) const {
-  Writer writer(tape_, first_, in_, ranges_);
   // Values of 0 or more are as good as one another, and so are those clearly below.
-  const Demand demand = wanted == Wanted::signs ? Demand{-1e-30, 0} : Demand{};
+  return shortened(wanted == Wanted::signs ? Demand{-1e-30, 0} : Demand{});
+}
+
+Evaluator Shortening::shortened(const Demand& demand) const {
+  Writer writer(tape_, first_, in_, ranges_);
   for (const uint32_t output : outputs_) writer.need(output, demand);
   writer.decide();
   return Evaluator(Tape(writer.write(outputs_)));

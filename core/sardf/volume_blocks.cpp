@@ -36,7 +36,7 @@ Bytes colored_cubes(const Bytes& inside, Colored colored) {
 
 // Interpolation's derivative along an axis lies, in a cube of eight samples, between the slopes
 // of its four edges along that axis.
-float steepness_in(const SampleGrid& grid, const float* field, const Block& block) {
+float steepness_in(const TexelGrid& grid, const float* field, const Block& block) {
   constexpr size_t edge = block_edge + 1, size = edge * edge * edge;
   constexpr size_t step[3] = {1, edge, edge * edge};
   std::array<float, size> value{}, slope{}, square{};
@@ -77,7 +77,7 @@ float steepness_in(const SampleGrid& grid, const float* field, const Block& bloc
   return std::sqrt(std::bit_cast<float>(largest));
 }
 
-std::vector<size_t> colored_in(const SampleGrid& grid, const float* field, Colored colored,
+std::vector<size_t> colored_in(const TexelGrid& grid, const float* field, Colored colored,
                                const Block& block) {
   const auto place = [&](const Index& at) {
     return size_t(at[0] - block.first[0] + 1) + step_y * size_t(at[1] - block.first[1] + 1) +

@@ -56,14 +56,14 @@ class Blocks {
 };
 
 /// The number of a sample.
-inline size_t number(const SampleGrid& grid, const Index& at) {
+inline size_t number(const TexelGrid& grid, const Index& at) {
   return size_t(at[0]) +
          size_t(grid.counts[0]) * (size_t(at[1]) + size_t(grid.counts[1]) * size_t(at[2]));
 }
 
 /// work(number of the first sample, how many) for each row of a block.
 template <class RowWork>
-void for_rows(const SampleGrid& grid, const Block& block, const RowWork& work) {
+void for_rows(const TexelGrid& grid, const Block& block, const RowWork& work) {
   for (int z = block.first[2]; z < block.last[2]; ++z) {
     for (int y = block.first[1]; y < block.last[1]; ++y) {
       work(number(grid, {block.first[0], y, z}), size_t(block.last[0] - block.first[0]));
@@ -73,7 +73,7 @@ void for_rows(const SampleGrid& grid, const Block& block, const RowWork& work) {
 
 /// each(index, number) for each sample of a block.
 template <class Each>
-void for_samples(const SampleGrid& grid, const Block& block, const Each& each) {
+void for_samples(const TexelGrid& grid, const Block& block, const Each& each) {
   for (int z = block.first[2]; z < block.last[2]; ++z) {
     for (int y = block.first[1]; y < block.last[1]; ++y) {
       size_t to = number(grid, {block.first[0], y, z});
@@ -84,10 +84,10 @@ void for_samples(const SampleGrid& grid, const Block& block, const Each& each) {
 
 /// The largest slope of the interpolated field in the cubes of eight samples whose lowest corners
 /// are in the block.
-float steepness_in(const SampleGrid& grid, const float* field, const Block& block);
+float steepness_in(const TexelGrid& grid, const float* field, const Block& block);
 
 /// The numbers of the block's samples that get a colour.
-std::vector<size_t> colored_in(const SampleGrid& grid, const float* field, Colored colored,
+std::vector<size_t> colored_in(const TexelGrid& grid, const float* field, Colored colored,
                                const Block& block);
 
 }  // namespace sardf::volume

@@ -209,7 +209,7 @@ class Sampler {
     batch.n = 0;
   }
 
-  const SampleGrid& grid_;
+  const TexelGrid& grid_;
   Pulse pulse_;
   const Colored colored_;
   const Block all_;
@@ -221,7 +221,7 @@ class Sampler {
 };
 
 void check(const VolumeSampling& sampling) {
-  const SampleGrid& grid = sampling.grid;
+  const TexelGrid& grid = sampling.grid;
   for (int axis = 0; axis < 3; ++axis) {
     const double from = grid.box.lo[axis], to = grid.box.hi[axis];
     if (!(from < to) || !std::isfinite(to - from)) {

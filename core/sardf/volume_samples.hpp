@@ -12,7 +12,7 @@ namespace sardf {
 
 /// Cells over a box, `counts` along x, y and z; a sample stands for the middle of its cell, as a
 /// texel of a texture that covers the box does.
-struct SampleGrid {
+struct TexelGrid {
   BoundingBox box;
   std::array<int, 3> counts{128, 128, 128};
 
@@ -36,7 +36,7 @@ enum class Colored {
 Colored colored_samples(const std::string& name);
 
 struct VolumeSampling {
-  SampleGrid grid;
+  TexelGrid grid;
   /// What is sampled: the solid with its sections cut away, or whole.
   bool sections = true;
   Colored colored = Colored::surface;

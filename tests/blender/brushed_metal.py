@@ -10,37 +10,15 @@ around z, "highlight", the reflection of a small lamp in a plate that is brushed
 import json
 import math
 import sys
-import tempfile
 from pathlib import Path
 
 import bpy
 import numpy as np
 
-PIXELS = 60
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from seen_from_above import look_from_above, rendered, rendered_vectors
 
-
-def look_from_above(scene):
-    camera = bpy.data.objects.new("above", bpy.data.cameras.new("above"))
-    camera.data.type, camera.data.ortho_scale = "ORTHO", 4.0
-    camera.location.z = 10.0
-    scene.collection.objects.link(camera)
-    scene.camera = camera
-    scene.render.resolution_x = scene.render.resolution_y = PIXELS
-    settings = scene.render.image_settings
-    settings.file_format, settings.color_mode, settings.color_depth = "OPEN_EXR", "RGB", "32"
-
-
-def rendered(scene, samples):
-    """The picture (rows, columns, 3), row 0 at the top, linear."""
-    scene.cycles.samples = samples
-    with tempfile.TemporaryDirectory() as folder:
-        scene.render.filepath = str(Path(folder) / "picture.exr")
-        bpy.ops.render.render(write_still=True)
-        image = bpy.data.images.load(scene.render.filepath)
-        values = np.empty(PIXELS * PIXELS * 4, dtype=np.float32)
-        image.pixels.foreach_get(values)
-        bpy.data.images.remove(image)
-    return values.reshape(PIXELS, PIXELS, 4)[::-1, :, :3]
+PIXELS, WIDTH = 60, 4.0
 
 
 def links_of(tree, shader):
@@ -49,18 +27,6 @@ def links_of(tree, shader):
         for link in tree.links
         if link.to_node == shader
     }
-
-
-def show_vectors(tree, vectors):
-    """The surface glows in the colour vector * 0.5 + 0.5."""
-    scaled = tree.nodes.new("ShaderNodeVectorMath")
-    scaled.operation = "MULTIPLY_ADD"
-    scaled.inputs[1].default_value = scaled.inputs[2].default_value = (0.5, 0.5, 0.5)
-    glow = tree.nodes.new("ShaderNodeEmission")
-    output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
-    tree.links.new(vectors, scaled.inputs[0])
-    tree.links.new(scaled.outputs["Vector"], glow.inputs["Color"])
-    tree.links.new(glow.outputs["Emission"], output.inputs["Surface"])
 
 
 def light_one_lamp(scene):
@@ -77,17 +43,17 @@ def light_one_lamp(scene):
 def main(blend, result_file):
     bpy.ops.wm.open_mainfile(filepath=blend)
     scene = bpy.context.scene
-    look_from_above(scene)
+    look_from_above(scene, WIDTH, PIXELS)
     part = next(item for item in scene.objects if item.type == "MESH")
     tree = part.data.materials[0].node_tree
     shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
     attribute = tree.nodes["sardf tangent attribute"]
     links = links_of(tree, shader) | {"attribute": attribute.attribute_name}
-    show_vectors(tree, shader.inputs["Tangent"].links[0].from_socket)
-    arrays = {"tangents": rendered(scene, 1)}
+    tangent = shader.inputs["Tangent"].links[0].from_socket
+    arrays = {"tangents": rendered_vectors(scene, tree, tangent)}
     attribute.attribute_name = "along_x"
     part.rotation_euler.z = math.pi / 2
-    arrays["turned"] = rendered(scene, 1)
+    arrays["turned"] = rendered_vectors(scene, tree, tangent)
     part.rotation_euler.z = 0.0
     output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
     tree.links.new(shader.outputs["BSDF"], output.inputs["Surface"])

@@ -15,7 +15,8 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import gui_window
-from gui_window import TimeOut, drive, result, screenshot, view
+from gui_window import TimeOut, addon, click, drive, open_tab, result, screenshot, view
+from installing import MODULE
 
 SCENE = sys.argv[-3]
 TICK = 0.05  # seconds between two looks at Blender's state
@@ -28,21 +29,13 @@ def until(condition, what, limit=LIMIT):
     return gui_window.until(condition, what, limit)
 
 
-def click(x, y):
-    """A real click; Blender counts y from below, X from above."""
-    height = view()[0].height
-    command = ["xdotool", "mousemove", str(x), str(height - y), "click", "1"]
-    subprocess.run(command, check=True)
-
-
 def contents():
     kinds = ("objects", "meshes", "materials", "images", "scenes", "textures")
     return {kind: sorted(x.name for x in getattr(bpy.data, kind)) for kind in kinds}
 
 
 def count_panel_draws():
-    from sardf_blender import panel
-
+    panel = addon("panel")
     original = panel.SARDF_PT_main.draw
 
     def draw(self, context):
@@ -53,9 +46,7 @@ def count_panel_draws():
 
 
 def bake_class():
-    from sardf_blender import operators
-
-    return operators.SARDF_OT_bake
+    return addon("operators").SARDF_OT_bake
 
 
 def redrawn():
@@ -63,22 +54,6 @@ def redrawn():
     before = drawn["panel"]
     view()[1].tag_redraw()
     yield from until(lambda: drawn["panel"] > before, "the panel to be drawn")
-
-
-def open_tab():
-    """Open the sidebar and click down its column of tabs until ours is shown."""
-    _, area, regions = view()
-    area.spaces.active.show_region_ui = True
-    yield from until(lambda: regions["UI"].width > 50, "the sidebar to open")
-    right, top = regions["UI"].x + regions["UI"].width, regions["UI"].y + regions["UI"].height
-    for down in range(30, 500, 25):
-        click(right - 10, top - down)
-        end = time.monotonic() + 0.5
-        while drawn["panel"] == 0 and time.monotonic() < end:
-            yield
-        if drawn["panel"]:
-            return
-    raise TimeOut("no tab showed the panel")
 
 
 def button_height(x):
@@ -108,7 +83,7 @@ def press_bake():
 
 
 def scenario():
-    bpy.ops.preferences.addon_enable(module="sardf_blender")
+    bpy.ops.preferences.addon_enable(module=MODULE)
     bpy.context.preferences.view.show_splash = False
     bpy.context.preferences.view.smooth_view = 0  # milliseconds of a flight to a new view
     count_panel_draws()
@@ -117,7 +92,7 @@ def scenario():
     settings.filepath = SCENE
     # Long enough to be interrupted: seconds.
     settings.resolution, settings.size = 256, "4096"
-    yield from open_tab()
+    yield from open_tab(view()[1], lambda: drawn["panel"] > 0, LIMIT)
     yield from redrawn()
     screenshot("panel")
     yield from cancelled_bake()

@@ -18,7 +18,8 @@ from mathutils import Matrix, Vector
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import gui_window
-from gui_window import drive, result, screenshot, view
+from gui_window import addon, drive, result, screenshot, view
+from installing import MODULE
 
 SCENE = sys.argv[-3]
 TICK = 0.02  # seconds between two looks at Blender's state
@@ -55,7 +56,7 @@ def note_draws(preview):
 
 def redrawn():
     """Wait until the view was drawn again, with everything that is in it now, and shown."""
-    from sardf_blender.preview import preview
+    preview = addon("preview.preview")
 
     for _ in range(2):
         yield
@@ -68,7 +69,7 @@ def redrawn():
 
 def settled():
     """Wait until everything is sampled finely and drawn."""
-    from sardf_blender.preview import preview
+    preview = addon("preview.preview")
 
     preview.collect()
     yield from until(lambda: not preview.CURRENT.busy, "the fine samples")
@@ -76,10 +77,10 @@ def settled():
 
 
 def scenario():
-    bpy.ops.preferences.addon_enable(module="sardf_blender")
+    bpy.ops.preferences.addon_enable(module=MODULE)
     bpy.context.preferences.view.smooth_view = 0  # milliseconds of a flight to a new view
     bpy.context.preferences.system.viewport_aa = "OFF"  # else a view is drawn many times
-    from sardf_blender.preview import preview
+    preview = addon("preview.preview")
 
     note_draws(preview)
     yield from shown()
@@ -180,13 +181,13 @@ def hidden(preview):
 
 
 def probed():
-    from sardf_blender.preview.preview_probe import SARDF_OT_probe
+    probe = addon("preview.preview_probe").SARDF_OT_probe
 
     window, area, regions = view()
     with bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"]):
         bpy.ops.sardf.probe("INVOKE_DEFAULT")
-    yield from until(lambda: SARDF_OT_probe.running is not None, "the probe")
-    operator = SARDF_OT_probe.running
+    yield from until(lambda: probe.running is not None, "the probe")
+    operator = probe.running
     column, row = pixel((0, 0, 0))
     for nudge in (1, 0):
         command = ["xdotool", "mousemove", str(int(column) + nudge), str(int(row))]
@@ -197,12 +198,14 @@ def probed():
     screenshot("preview_probe")
     result["probe"] = list(operator.lines)
     subprocess.run(["xdotool", "key", "Escape"], check=True)
-    yield from until(lambda: SARDF_OT_probe.running is None, "Esc to end the probe", 20)
+    yield from until(lambda: probe.running is None, "Esc to end the probe", 20)
 
 
 def replaced(preview):
     """Where the graphics card refuses, a mesh stands in; once it works again, none does."""
-    from sardf_blender.preview import preview_draw, preview_stand_in
+    preview_draw, preview_stand_in = map(
+        addon, ("preview.preview_draw", "preview.preview_stand_in")
+    )
 
     def refuse(_self):
         raise RuntimeError("no shader today")
@@ -283,7 +286,7 @@ def interrupted(preview):
     bpy.context.scene.sardf.filepath = SCENE
     yield from busy(preview)
     begun = time.monotonic()
-    bpy.ops.preferences.addon_disable(module="sardf_blender")
+    bpy.ops.preferences.addon_disable(module=MODULE)
     result["seconds to disable"] = time.monotonic() - begun
     yield
     result["threads at the end"] = threads()

@@ -5,6 +5,7 @@ two arguments are a folder for screenshots and RESULT.json.
 A script is a generator: each yield gives Blender time, and it waits for what it expects by `until`.
 """
 
+import importlib
 import json
 import os
 import subprocess
@@ -15,12 +16,20 @@ from pathlib import Path
 
 import bpy
 
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from installing import MODULE
+
 FOLDER, RESULT = sys.argv[-2:]
 result = {"errors": []}
 
 
 class TimeOut(Exception):
     pass
+
+
+def addon(name):
+    """A module of the installed add-on."""
+    return importlib.import_module(f"{MODULE}.{name}")
 
 
 def until(condition, what, limit):
@@ -43,6 +52,31 @@ def view():
 
 def screenshot(name):
     subprocess.run(["import", "-window", "root", f"{FOLDER}/{name}.png"], check=True)
+
+
+def click(x, y):
+    """A real click; Blender counts y from below, X from above."""
+    height = view()[0].height
+    command = ["xdotool", "mousemove", str(x), str(height - y), "click", "1"]
+    subprocess.run(command, check=True)
+
+
+def open_tab(area, is_drawn, limit):
+    """Open an area's sidebar and click down its column of tabs until ours is shown: Blender 3.4 has
+    no other way to choose one."""
+    area.spaces.active.show_region_ui = True
+    sidebar = next(region for region in area.regions if region.type == "UI")
+    yield from until(lambda: sidebar.width > 50, "the sidebar to open", limit)
+    right, top = sidebar.x + sidebar.width, sidebar.y + sidebar.height
+    for down in range(30, 500, 25):
+        click(right - 10, top - down)
+        end = time.monotonic() + 0.5
+        while not is_drawn() and time.monotonic() < end:
+            yield
+        if is_drawn():
+            return
+    screenshot(f"{Path(RESULT).stem}_time_out")
+    raise TimeOut("no tab showed the panel")
 
 
 def drive(steps, tick):

@@ -8,49 +8,15 @@ the mesh, and "at" those middles.
 """
 
 import sys
-import tempfile
 from pathlib import Path
 
 import bpy
 import numpy as np
 
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from seen_from_above import look_from_above, rendered_vectors
+
 PIXELS, WIDTH = 64, 2.4
-RANGE = 4.0  # of what is shown, around 0
-
-
-def look_from_above(scene):
-    camera = bpy.data.objects.new("above", bpy.data.cameras.new("above"))
-    camera.data.type, camera.data.ortho_scale = "ORTHO", WIDTH
-    camera.location.z = 10.0
-    scene.collection.objects.link(camera)
-    scene.camera = camera
-    scene.render.resolution_x = scene.render.resolution_y = PIXELS
-    scene.cycles.samples = 1
-    scene.cycles.pixel_filter_type = "BOX"
-    scene.cycles.filter_width = 0.01
-    settings = scene.render.image_settings
-    settings.file_format, settings.color_mode, settings.color_depth = "OPEN_EXR", "RGB", "32"
-
-
-def rendered(scene, tree, vectors):
-    """(rows, columns, 3) of a socket's vectors, row 0 at the top."""
-    scaled = tree.nodes.new("ShaderNodeVectorMath")
-    scaled.operation = "MULTIPLY_ADD"
-    scaled.inputs[1].default_value = (1 / RANGE,) * 3
-    scaled.inputs[2].default_value = (0.5,) * 3
-    glow = tree.nodes.new("ShaderNodeEmission")
-    output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
-    tree.links.new(vectors, scaled.inputs[0])
-    tree.links.new(scaled.outputs["Vector"], glow.inputs["Color"])
-    tree.links.new(glow.outputs["Emission"], output.inputs["Surface"])
-    with tempfile.TemporaryDirectory() as folder:
-        scene.render.filepath = str(Path(folder) / "picture.exr")
-        bpy.ops.render.render(write_still=True)
-        image = bpy.data.images.load(scene.render.filepath)
-        values = np.empty(PIXELS * PIXELS * 4, dtype=np.float32)
-        image.pixels.foreach_get(values)
-        bpy.data.images.remove(image)
-    return (values.reshape(PIXELS, PIXELS, 4)[::-1, :, :3].astype(float) - 0.5) * RANGE
 
 
 def read(items, name, size):
@@ -95,7 +61,9 @@ def decoded(data, image):
 def main(blend, result_file):
     bpy.ops.wm.open_mainfile(filepath=blend)
     scene = bpy.context.scene
-    look_from_above(scene)
+    look_from_above(scene, WIDTH, PIXELS)
+    scene.cycles.pixel_filter_type = "BOX"
+    scene.cycles.filter_width = 0.01
     scene.world = None  # black beside the part
     part = next(item for item in scene.objects if item.type == "MESH")
     tree = part.data.materials[0].node_tree
@@ -105,9 +73,9 @@ def main(blend, result_file):
     arrays["colorspace"] = image.colorspace_settings.name
     arrays["at"], arrays["decoded"] = decoded(part.data, image)
     geometry = tree.nodes.new("ShaderNodeNewGeometry")
-    arrays["normals"] = rendered(scene, tree, bent)
-    arrays["smooth"] = rendered(scene, tree, geometry.outputs["Normal"])
-    arrays["positions"] = rendered(scene, tree, geometry.outputs["Position"])
+    arrays["normals"] = rendered_vectors(scene, tree, bent)
+    arrays["smooth"] = rendered_vectors(scene, tree, geometry.outputs["Normal"])
+    arrays["positions"] = rendered_vectors(scene, tree, geometry.outputs["Position"], largest=2.0)
     np.savez(result_file, **arrays)
 
 

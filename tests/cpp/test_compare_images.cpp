@@ -1,4 +1,4 @@
-#include "cli/compare_images.hpp"
+#include "sardf/compare_images.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cli/compare_json.hpp"
 #include "cli/compare_report.hpp"
-#include "cli/edge_distance.hpp"
+#include "sardf/edge_distance.hpp"
 #include "sardf/error.hpp"
 
 namespace sardf {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "golden_fields.hpp"
+#include "golden_helix.hpp"
 #include "sardf/scene.hpp"
 
 namespace sardf {
@@ -108,8 +109,10 @@ TEST_P(GoldenInterpolationFeatures, MakeFigure15) {
 
 // u1 joins the four walls and the hole by the R-equivalence of order 1, 1 / Σ 1/u.
 TEST_P(GoldenInterpolationFeatures, MakeFigure14a) {
-  const golden::Table table = read("fig_bst_14a_idw");
+  golden::Table table = read("fig_bst_14a_idw");
   const std::string half = number(table, "cube_half");
+  golden::HelixSearch{{}, table.parameter("helix_rad"), table.parameter("cube_half")}.remove_missed(
+      table);
   std::string walls;
   for (const char* side : {" - x)", " + x)", " - y)", " + y)"}) {
     walls += "1/abs(" + half + side + " + ";

@@ -48,7 +48,7 @@ VolumeSampling sampling_of(const Scene& scene, std::array<int, 3> counts) {
 }
 
 // The samples' places, as floats.
-std::vector<float> places(const SampleGrid& grid) {
+std::vector<float> places(const TexelGrid& grid) {
   std::vector<float> points;
   for (int k = 0; k < grid.counts[2]; ++k) {
     for (int j = 0; j < grid.counts[1]; ++j) {
@@ -63,7 +63,7 @@ std::vector<float> places(const SampleGrid& grid) {
 }
 
 // Whether a corner of a cube of eight samples that has to be coloured, found one by one.
-bool is_colored(const VolumeSamples& samples, const SampleGrid& grid, const std::array<int, 3>& at,
+bool is_colored(const VolumeSamples& samples, const TexelGrid& grid, const std::array<int, 3>& at,
                 Colored colored) {
   const auto inside = [&](int x, int y, int z) {
     if (std::min({x, y, z}) < 0) return false;
@@ -187,7 +187,7 @@ TEST(VolumeSamples, KnowHowSteepTheyAre) {
 TEST(VolumeSamples, AreNoSteeperThanTheySay) {
   const Scene scene = drilled_block();
   const VolumeSampling sampling = sampling_of(scene, {24, 20, 16});
-  const SampleGrid& grid = sampling.grid;
+  const TexelGrid& grid = sampling.grid;
   const VolumeSamples samples = sample_volume(scene, sampling);
   const auto interpolated = [&](const Vec3& p) {
     size_t low[3];

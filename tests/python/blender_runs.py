@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -127,20 +128,53 @@ def run_script(version, script, *arguments, limit=300, **keywords):
     return subprocess.CompletedProcess(process.args, process.returncode, output, errors)
 
 
+# Windows are those of Debian 12's Blender, or of that in the chroot that SARDF_WINDOW_CHROOT names:
+# scripts/test-blender-matrix runs these tests so.
+WINDOW_CHROOT = os.environ.get("SARDF_WINDOW_CHROOT", "")
+ENTER_CHROOT = os.environ.get("SARDF_BLENDER_CHROOT", "")
+
+
+def in_window_system(words, user_folder):
+    """The command as it is run where Blender's windows are, and the environment it needs."""
+    ours = environment(user_folder)
+    if not WINDOW_CHROOT:
+        return words, ours
+    folders = [f"{key}={value}" for key, value in ours.items() if key.startswith("BLENDER_USER_")]
+    ours["BLENDER_CHROOT_BIND"] = f"{ROOT}:{user_folder.parent}"
+    ours["BLENDER_CHROOT_CWD"] = str(ROOT)
+    return [ENTER_CHROOT, "exec", WINDOW_CHROOT, "env", *folders, *words], ours
+
+
+def install_for_window(zips, user_folder):
+    """Install the add-on where run_in_window finds it, without enabling it."""
+    if not WINDOW_CHROOT:
+        with zipfile.ZipFile(zips["3.4.1"]) as archive:
+            archive.extractall(user_folder / "scripts/addons")
+        return
+    zip_file = max((ROOT / "dist").glob("sardf_blender-*[0-9].zip"), key=os.path.getmtime)
+    for kind in ("config", "scripts"):
+        (user_folder / kind).mkdir(parents=True, exist_ok=True)
+    words = ["blender", "-c", "extension", "install-file", "-r", "user_default", str(zip_file)]
+    words, ours = in_window_system(words, user_folder)
+    done = subprocess.run(words, env=ours, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
 def run_in_window(script, *arguments, user_folder, size, limit):
-    """What tests/blender/gui_window.py's `result` became in a window of Blender 3.4.1 of `size`
-    (width, height), and the finished process. Screenshots are in SCREENSHOTS."""
+    """What tests/blender/gui_window.py's `result` became in a window of `size` (width, height), and
+    the finished process. Screenshots are in SCREENSHOTS."""
     SCREENSHOTS.mkdir(parents=True, exist_ok=True)
     user_folder.mkdir(parents=True, exist_ok=True)
     result_file = user_folder / f"{script.stem.removeprefix('gui_')}.json"
     width, height = map(str, size)
     words = [str(word) for word in (*arguments, SCREENSHOTS, result_file)]
-    done = subprocess.run(
+    command, ours = in_window_system(
         ["xvfb-run", "-a", "-s", f"-screen 0 {width}x{height}x24",
          "blender", "--factory-startup", "--window-geometry", "0", "0", width, height,
          "-P", str(script), "--", *words],
-        env=environment(user_folder), capture_output=True, text=True, timeout=limit,
+        user_folder,
     )  # fmt: skip
+    done = subprocess.run(command, env=ours, capture_output=True, text=True, timeout=limit)
     assert result_file.is_file(), done.stdout + done.stderr
     result = json.loads(result_file.read_text())
     assert not result["errors"], result["errors"][0]

@@ -12,3 +12,10 @@ def zips(tmp_path_factory):
     assert len(wheels) == 1, "scripts/setup builds one wheel"
     extension, legacy = build_zips(wheels[0], tmp_path_factory.mktemp("dist"))
     return {"3.4.1": legacy, "5.0.1": extension}
+
+
+def pytest_collection_modifyitems(items):
+    """`-m window` chooses the tests that need a window of Blender."""
+    for item in items:
+        if "window" in getattr(item, "fixturenames", ()):
+            item.add_marker(pytest.mark.window)

@@ -86,10 +86,6 @@ def test_attributes_stand_at_the_points_under_their_names(plate):
     assert not {"four", "four_5", "pole.001", "stress"} & set(kinds)
 
 
-def from_picture(picture):
-    return picture.astype(float) * 2 - 1
-
-
 def test_metal_is_brushed_along_the_attribute(plate):
     """Principled gets unit vectors in the world's axes, and its reflections stretch across them."""
     version, folder, output = plate
@@ -102,8 +98,8 @@ def test_metal_is_brushed_along_the_attribute(plate):
     x, y = np.meshgrid(middles, -middles)
     clear = np.hypot(x, y) > 0.6  # of the middle, where a cell of the mesh holds every direction
     wanted = np.stack([-y, x, 0 * x], axis=-1) / np.hypot(x, y)[..., None]
-    assert np.abs(from_picture(arrays["tangents"]) - wanted)[clear].max() < 0.03
-    assert np.abs(from_picture(arrays["turned"]) - [0, 1, 0]).max() < 0.01
+    assert np.abs(arrays["tangents"] - wanted)[clear].max() < 0.03
+    assert np.abs(arrays["turned"] - [0, 1, 0]).max() < 0.01
     light = arrays["highlight"].mean(axis=-1).astype(float)
     spread_x, spread_y = (np.sqrt((light * c**2).sum() / light.sum()) for c in (x, y))
     assert light.max() > 0.01
@@ -134,7 +130,9 @@ def test_baking_again_changes_the_attribute_and_keeps_the_rest(version, tmp_path
     assert (first["attribute"], second["attribute"]) == ("along_x", "around")
     assert [s["strength"] for s in (first, second, again)] == pytest.approx([0.8, 0.3, 0.8])
     assert first["linked"] == second["linked"] == again["linked"] == [True, True]
-    assert first["nodes"] == second["nodes"] == again["nodes"] == plain["nodes"] + 4
+    assert (
+        first["nodes"] == second["nodes"] == again["nodes"] == plain["nodes"] + 5
+    )  # and their frame
     assert plain["linked"] == [False, False]
     assert plain["anisotropic"] == 0
     assert ended == plain

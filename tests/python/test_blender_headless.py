@@ -127,6 +127,7 @@ def test_images_have_the_right_colour_space_and_survive_reopening(sphere):
         "sardf roughness": ("Roughness", "Non-Color"),
         "sardf metallic": ("Metallic", "Non-Color"),
         "sardf emission": (emission_socket, linear_name),
+        "sardf fractions_1": ("Color", "Non-Color"),  # split into masks
     }
     assert {n: (i["to"], i["colorspace"]) for n, i in facts["images"].items()} == wanted
     for name, image in facts["images"].items():

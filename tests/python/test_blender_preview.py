@@ -1,8 +1,7 @@
-"""The add-on's preview, installed: in a window of Blender 3.4.1, and without one."""
+"""The add-on's preview, installed: in a window, and without one."""
 
 import json
 import subprocess
-import zipfile
 
 import numpy as np
 import pytest
@@ -14,6 +13,7 @@ from blender_runs import (
     STEEL,
     VERSIONS,
     expected_colors,
+    install_for_window,
     linear,
     run_in_window,
     run_script,
@@ -27,8 +27,7 @@ WIDTH, HEIGHT = 1000, 700
 def window(zips, tmp_path_factory):
     """What gui_preview.py found."""
     folder = tmp_path_factory.mktemp("window")
-    with zipfile.ZipFile(zips["3.4.1"]) as archive:
-        archive.extractall(folder / "user/scripts/addons")
+    install_for_window(zips, folder / "user")
     scene = write_scene(folder, GRADED_SPHERE)
     result, done = run_in_window(
         SCRIPTS / "gui_preview.py", scene,

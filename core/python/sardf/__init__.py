@@ -16,15 +16,22 @@ from sardf._core import (
     Field,
     Mesh,
     __version__,
+    compare_pictures,
     formula,
+    is_color,
     load,
+    povray_stage,
     schema,
+    texels_per_unit,
     x,
     y,
     z,
 )
+from sardf._cost import measure_bake
+from sardf._exr import write_exr
 from sardf._render import render
 from sardf._scene import Scene, blend
+from sardf._uv import check_uv_map
 
 for _name in (*_core._constructors, *_core._blends.values()):
     globals()[_name] = getattr(_core, _name)
@@ -38,10 +45,17 @@ __all__ = [
     "Scene",
     "__version__",
     "blend",
+    "compare_pictures",
+    "check_uv_map",
     "formula",
+    "is_color",
     "load",
+    "povray_stage",
+    "measure_bake",
     "render",
     "schema",
+    "texels_per_unit",
+    "write_exr",
     "x",
     "y",
     "z",

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -104,9 +103,6 @@ std::vector<Criterion> criteria(const Comparison& comparison, const Limits& limi
 /// The criteria that do not hold, as sentences; empty: the two agree.
 std::vector<std::string> failed_criteria(const Comparison& comparison, const Limits& limits);
 bool passes(const Comparison& comparison, const Limits& limits);
-
-/// All numbers, the criteria with value, limit and verdict, and "passes".
-nlohmann::ordered_json to_json(const Comparison& comparison, const Limits& limits);
 
 /// |candidate - reference| x factor in each of three channels, clamped to [0, 1].
 Image difference_image(const Image& reference, const Image& candidate, float factor = 16);

@@ -1,11 +1,10 @@
-#include "cli/compare_images.hpp"
+#include "sardf/compare_images.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
-#include "cli/edge_distance.hpp"
+#include "sardf/edge_distance.hpp"
 #include "sardf/error.hpp"
 
 namespace sardf {
@@ -144,16 +143,6 @@ void check_mask(const Mask& mask, const Image& reference, const std::string& wha
     throw Error(what + " is empty: the picture shows nothing but background");
 }
 
-nlohmann::ordered_json to_json(const ColorAgreement& color) {
-  return {{"compared_pixels", color.compared_pixels},
-          {"median", color.median},
-          {"quantile_99", color.quantile_99},
-          {"maximum", color.maximum},
-          {"left_out_share", color.left_out_share},
-          {"outline_share", color.outline_share},
-          {"left_out_within_share", color.left_out_within_share}};
-}
-
 // Counts whole; else digits enough to tell 0.99798 from a limit of 0.998.
 std::string number_text(double value) {
   std::array<char, 32> text{};
@@ -268,29 +257,6 @@ std::vector<std::string> failed_criteria(const Comparison& comparison, const Lim
 
 bool passes(const Comparison& comparison, const Limits& limits) {
   return failed_criteria(comparison, limits).empty();
-}
-
-nlohmann::ordered_json to_json(const Comparison& comparison, const Limits& limits) {
-  nlohmann::ordered_json json = {
-      {"passes", passes(comparison, limits)},
-      {"width", comparison.width},
-      {"height", comparison.height},
-      {"intersection_over_union", comparison.intersection_over_union},
-      {"edge_elements", comparison.edge_elements},
-      {"edge_within_half_pixel_share", comparison.edge_within_half_pixel_share},
-      {"edge_distance_99", comparison.edge_distance_99},
-      {"edge_distance_maximum", comparison.edge_distance_maximum},
-      {"non_finite_pixels", comparison.non_finite_pixels},
-      {"color", to_json(comparison.color)}};
-  if (comparison.normal) json["normal"] = to_json(*comparison.normal);
-  for (const Criterion& criterion : criteria(comparison, limits))
-    json["criteria"].push_back({{"name", criterion.name},
-                                {"unit", criterion.unit},
-                                {"value", criterion.value},
-                                {criterion.at_least ? "at_least" : "at_most", criterion.limit},
-                                {"holds", criterion.holds}});
-  json["failed"] = failed_criteria(comparison, limits);
-  return json;
 }
 
 Image difference_image(const Image& reference, const Image& candidate, float factor) {

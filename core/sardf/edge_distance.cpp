@@ -1,4 +1,4 @@
-#include "cli/edge_distance.hpp"
+#include "sardf/edge_distance.hpp"
 
 #include <algorithm>
 #include <array>

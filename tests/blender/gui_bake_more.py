@@ -1,0 +1,240 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bakes into a folder in a window, interrupted in every way:
+blender --factory-startup -P gui_bake_more.py -- ADDON_FOLDER SCENE.json FOLDER RESULT.json; see
+gui_window.py. Writes bake_panel.png, bake_progress.png and bake_nodes.png into FOLDER. The panel is
+put into the tab that is shown first, since Blender 3.4 has no way but a click to choose another.
+"""
+
+import importlib
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import traceback
+from pathlib import Path
+
+import bpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import addon_folder
+from gui_window import drive, result, screenshot, until, view
+
+ADDON, SCENE = sys.argv[-4:-2]
+LIMIT = 100.0  # seconds for anything at most
+place = {}
+said = []
+
+
+def module(name):
+    return importlib.import_module(f"sardf_blender.{name}")
+
+
+def bake_class():
+    return module("bake_operator").SARDF_OT_bake
+
+
+def watch():
+    """Put the panel into the first tab, keep its first error, and what the operator reports."""
+    panel = module("bake_panel").SARDF_PT_bake
+    panel.bl_category = "Tool"
+    original = panel.draw
+
+    def draw(self, context):
+        try:
+            original(self, context)
+        except Exception:
+            result["errors"].append(traceback.format_exc())
+            raise
+        result["drawn"] = result.get("drawn", 0) + 1
+
+    panel.draw = draw
+    fail = bake_class()._fail
+
+    def reported(self, error):
+        said.append(str(error))
+        return fail(self, error)
+
+    bake_class()._fail = reported
+
+
+def contents():
+    kinds = ("objects", "meshes", "materials", "images", "texts", "scenes")
+    return {kind: sorted(x.name for x in getattr(bpy.data, kind)) for kind in kinds}
+
+
+def redrawn():
+    before = result.get("drawn", 0)
+    place["area"].tag_redraw()
+    yield from until(lambda: result.get("drawn", 0) > before, "the panel to be drawn", LIMIT)
+
+
+def start():
+    with bpy.context.temp_override(**place):
+        bpy.ops.sardf.bake("INVOKE_DEFAULT")
+    return bake_class().job
+
+
+def ended(job):
+    yield from until(lambda: bake_class().job is None, "the bake to end", LIMIT)
+    yield from until(lambda: not job.running, "the thread to end", LIMIT)
+
+
+def scenario():
+    window, area, regions = view()
+    area.spaces.active.show_region_ui = True
+    place.update(window=window, area=area, region=regions["WINDOW"])
+    bpy.data.meshes.remove(bpy.data.meshes["Cube"])
+    settings = bpy.context.scene.sardf
+    settings.filepath = SCENE
+    settings.channels = "base_color, roughness, metallic, fractions, normal, density"
+    with tempfile.TemporaryDirectory() as folder:
+        target = Path(folder) / "new" / "textures"
+        settings.destination, settings.folder = "FOLDER", str(target)
+        yield from panel_before_a_bake(settings)
+        yield from escape(settings, Path(folder))
+        yield from deleted_part(settings, Path(folder))
+        yield from disabled_addon(settings, Path(folder))
+        yield from finished(settings, target)
+        yield from nodes(window, area)
+
+
+def panel_before_a_bake(settings):
+    settings.resolution, settings.size = 256, "4096"
+    yield from redrawn()
+    info = module("bake_info")
+    yield from until(lambda: info.cost(bpy.context) is not None, "the estimate", LIMIT)
+    yield from redrawn()
+    result["estimate"] = info.cost(bpy.context).seconds
+    screenshot("bake_panel")
+
+
+def escape(settings, folder):
+    """In the middle of the mesh, of the textures and of the files."""
+    before = contents()
+    result["interrupted"], result["seconds to cancel"] = [], []
+    for share, resolution, size in ((0.02, 256, "4096"), (0.5, 48, "4096"), (0.85, 48, "4096")):
+        settings.resolution, settings.size = resolution, size
+        job = start()
+        yield from until(lambda job=job, s=share: job.share > s or not job.running, "work", LIMIT)
+        yield from redrawn()
+        result["stage"] = bake_class().stage
+        if share < 0.6:
+            screenshot("bake_progress")
+        result["interrupted"].append(job.share)
+        stopped = []
+        watch_end(job, stopped)
+        subprocess.run(["xdotool", "key", "Escape"], check=True)
+        yield from ended(job)
+        yield from until(lambda stopped=stopped: stopped, "the watcher to see the end", LIMIT)
+        result["seconds to cancel"] += stopped
+        result["cancelled"] = result.get("cancelled", True) and job.cancelled
+    result["left by Esc"] = [contents() != before, [str(p) for p in folder.rglob("*")]]
+
+
+def watch_end(job, stopped):
+    """Append how long the thread goes on after the operator heard of Esc; not in Blender's ticks,
+    which X11 and drawing hold up."""
+    heard = threading.Event()
+    cancel = job.cancel
+
+    def cancelled():
+        heard.set()
+        cancel()
+
+    def look():
+        heard.wait()
+        begun = time.monotonic()
+        while job.running:
+            time.sleep(0.001)
+        stopped.append(time.monotonic() - begun)
+
+    job.cancel = cancelled
+    threading.Thread(target=look, daemon=True).start()
+
+
+def deleted_part(settings, folder):
+    with bpy.context.temp_override(**place):
+        bpy.ops.sardf.part_import(filepath=SCENE)
+        part = bpy.context.view_layer.objects.active
+        settings.resolution = 200
+        job = start()
+        yield from until(lambda: job.share > 0, "the bake to begin", LIMIT)
+        bpy.data.objects.remove(part)
+    yield from ended(job)
+    result["deleted part"] = [said[-1], [str(p) for p in folder.rglob("*")]]
+
+
+def disabled_addon(settings, folder):
+    job = start()
+    yield from until(lambda: job.share > 0, "the bake to begin", LIMIT)
+    sys.modules["sardf_blender"].unregister()
+    yield from until(lambda: not job.running, "the thread to end", LIMIT)
+    end = time.monotonic() + 0.5
+    yield from until(lambda: time.monotonic() > end, "half a second", LIMIT)
+    result["disabled"] = [job.cancelled, [str(p) for p in folder.rglob("*")]]
+    sys.modules["sardf_blender"].register()
+    yield from redrawn()
+
+
+def finished(settings, target):
+    settings.resolution, settings.size = 24, "512"
+    with bpy.context.temp_override(**place):
+        bpy.context.view_layer.objects.active = None
+        bpy.ops.ed.undo_push(message="before the bake")
+    before = contents()
+    job = start()
+    yield from ended(job)
+    result["files"] = sorted(path.name for path in target.iterdir())
+    item = bpy.context.view_layer.objects.active
+    result["baked"] = [item.name, len(item.data.polygons)]
+    with bpy.context.temp_override(**place):
+        bpy.ops.ed.undo()
+        yield from redrawn()
+        result["undone"] = contents()["objects"] == before["objects"]
+        bpy.ops.ed.redo()
+        yield from redrawn()
+    result["redone"] = item_name() == result["baked"][0]
+
+
+def item_name():
+    return bpy.context.view_layer.objects.active.name
+
+
+def nodes(window, area):
+    """The material in a node editor: what is drawn has sizes."""
+    item = bpy.context.view_layer.objects.active
+    area.type = "NODE_EDITOR"
+    area.ui_type = "ShaderNodeTree"
+    tree = item.data.materials[0].node_tree
+
+    def drawn():
+        area.tag_redraw()
+        return all(node.dimensions.x > 0 for node in tree.nodes)
+
+    yield from until(drawn, "the nodes to be drawn", LIMIT)
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    with bpy.context.temp_override(window=window, area=area, region=region):
+        bpy.ops.node.view_all()
+    end = time.monotonic() + 2
+    yield from until(lambda: area.tag_redraw() or time.monotonic() > end, "two seconds", LIMIT)
+    result["nodes"] = {node.name: box(node) for node in tree.nodes}
+    screenshot("bake_nodes")
+
+
+def box(node):
+    """[left, right, bottom, top, name of the frame] in the node editor's units."""
+    scale = bpy.context.preferences.system.ui_scale
+    x, y = node.location
+    frame = node.parent
+    parent = frame
+    while parent is not None:
+        x, y = x + parent.location.x, y + parent.location.y
+        parent = parent.parent
+    width, height = (each / scale for each in node.dimensions)
+    return [x, x + width, y - height, y, frame.name if frame else "", node.type]
+
+
+bpy.context.preferences.view.show_splash = False
+addon_folder.load(ADDON, before=watch)
+drive(scenario(), 0.02)

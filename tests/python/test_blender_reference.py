@@ -1,0 +1,93 @@
+"""Parts in POV-Ray by Blender's camera and lights, and against Cycles; Blender 3.4.1, bpy 5.0.1."""
+
+import os
+
+import pytest
+from blender_runs import VERSIONS, run_check
+
+
+@pytest.fixture(scope="module", params=VERSIONS)
+def version(request):
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def lit(version, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("lights")
+    return run_check(version, folder, "reference", "lights", folder)
+
+
+def check_agrees(numbers, median=2.0, outline=0.999):
+    assert "error" not in numbers, numbers
+    assert numbers["intersection_over_union"] >= outline
+    assert numbers["median"] <= median
+    assert numbers["compared_pixels"] > 500
+
+
+def test_cameras(version, tmp_path):
+    found = run_check(version, tmp_path, "reference", "cameras")
+    assert len(found) == 7
+    for numbers in found.values():
+        check_agrees(numbers)
+
+
+LIGHTS = ("point", "soft point", "sun", "spot", "rectangle", "disk", "world")
+
+
+@pytest.mark.parametrize("name", LIGHTS)
+def test_lights(lit, name):
+    """Matte surfaces agree in radiance; 99 % with shadows' edges, of which soft ones are steps."""
+    check_agrees(lit[name], median=1.0, outline=0.998)
+    assert not lit[name]["warnings"]
+
+
+def test_flat(lit):
+    check_agrees(lit["flat"], outline=0.998)
+    assert lit["flat"]["quantile_99"] <= 2
+
+
+def test_parts_turned_and_cut(version, tmp_path):
+    found = run_check(version, tmp_path, "reference", "turned")
+    for numbers in found.values():
+        check_agrees(numbers, outline=0.998)
+    assert found["cut"]["compared_pixels"] != found["whole"]["compared_pixels"]
+
+
+def test_what_is_left_behind(version, tmp_path):
+    found = run_check(version, tmp_path, "reference", "leaves")
+    assert found["counts"][0] == found["counts"][1] == found["counts"][2]
+    assert found["settings"]
+    assert found["user's image"] == [4, 4]
+    assert found["images"]["reference"] == "sardf reference.001"  # the user's keeps its name
+    assert found["images"]["difference"] == "sardf difference ×16"
+    assert found["size"] == [160, 120]
+    assert found["packed"]
+    assert found["kept"]
+    assert found["alone"]["compared"] == ""
+
+
+def test_what_cannot_be_drawn_is_told(version, tmp_path):
+    found = run_check(version, tmp_path, "reference", "bad")
+    assert "nothing to draw" in found["nothing"]["error"]
+    assert "has no camera" in found["no camera"]["error"]
+    assert "panoramic" in found["panoramic"]["error"]
+    names, told = found["names"], "\n".join(found["not carried over"]["warnings"])
+    for expected in (
+        f"depth of field of the camera '{names['camera']}'",
+        f"spread of the light '{names['area']}'",
+        f"IES texture of the light '{names['ies']}'",
+        "environment picture (HDRI) of the world 'sky'",
+        "no parts are left out: 'floor'",
+    ):
+        assert expected in told
+    assert "spot" not in told
+    assert "cannot be compared" in found["empty"]["error"]
+
+
+def test_povray_is_missing(version, tmp_path, monkeypatch):
+    monkeypatch.setitem(os.environ, "POVRAY", "/no/povray")
+    found = run_check(version, tmp_path, "reference", "missing")
+    for numbers in (found["compared"], found["alone"]):
+        assert "POV-Ray 3.7 was not found" in numbers["error"]
+        assert "add-on's preferences" in numbers["error"]
+    assert found["left"]

@@ -6,7 +6,13 @@ import time
 from pathlib import Path
 
 import bpy
-from sardf_blender.parts import part_objects, part_properties, part_scene, part_status
+from sardf_blender.parts import (
+    part_now,
+    part_objects,
+    part_properties,
+    part_scene,
+    part_status,
+)
 
 CASES = {}
 
@@ -34,7 +40,7 @@ def main(folder):
 def said(part):
     """The sentence of the error, or the warnings."""
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    part_status.forget()
+    part_now.forget()
     status = part_status.status(part, depsgraph)  # what the panel shows
     try:
         text, shown = part_scene.scene_of(part, depsgraph)[1], list(status.lines)

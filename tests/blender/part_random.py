@@ -20,7 +20,8 @@ class Work:
         self.unexpected = []
 
     def step(self):
-        often = [4 if name in ("add", "bake") else 1 if name == "delete" else 2 for name in STEPS]
+        weights = {"add": 4, "bake": 4, "bake_pieces": 4, "redo": 8, "delete": 1}
+        often = [weights.get(name, 2) for name in STEPS]
         (name,) = self.random.choices(list(STEPS), often)
         try:
             STEPS[name](self)
@@ -118,7 +119,10 @@ def edit_section(work):
 
 
 def bake_pieces(work):
-    work.part()
+    part = work.part()
+    if part is not None and not part.sardf_part.sections:
+        bpy.ops.sardf.section_add(kind="plane")
+        work.activate(part)
     bpy.context.scene.sardf.resolution, bpy.context.scene.sardf.size = 4, "256"
     bpy.ops.sardf.bake_pieces()
 

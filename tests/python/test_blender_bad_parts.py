@@ -82,8 +82,8 @@ def test_ten_thousand_objects(bad):
 
 
 def test_random_work_leaves_nothing_behind(version, tmp_path):
-    found = run_check(version, tmp_path, "part_random", 200, 20261126, tmp_path)
-    assert found["steps"] >= 200
+    found = run_check(version, tmp_path, "part_random", 300, 20261126, tmp_path)
+    assert found["steps"] >= 300
     assert min(found["done"].values()) > 0, found["done"]
     assert found["unexpected"] == []
     assert found["left"] == {}

@@ -109,7 +109,10 @@ LIGHTS = {
     "point": ("POINT", {"energy": 800, "color": (1, 0.8, 0.6), "shadow_soft_size": 0}),
     "soft point": ("POINT", {"energy": 800, "shadow_soft_size": 0.6}),
     "sun": ("SUN", {"energy": 2, "angle": 0.05}),
-    "spot": ("SPOT", {"energy": 1500, "spot_size": 0.5, "spot_blend": 0.6}),
+    "spot": (
+        "SPOT",
+        {"energy": 1500, "spot_size": 0.5, "spot_blend": 0.6, "shadow_soft_size": 0.05},
+    ),
     "rectangle": ("AREA", {"energy": 500, "shape": "RECTANGLE", "size": 2, "size_y": 1}),
     "disk": ("AREA", {"energy": 500, "shape": "DISK", "size": 2}),
 }
@@ -129,7 +132,9 @@ def lights(folder):
         save(folder, name)
         bpy.data.objects.remove(light)
     world = bpy.data.worlds.new("plain")
-    world.color = (0.2, 0.3, 0.5)
+    world.use_nodes = True
+    world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.1, 0.15, 0.25, 1)
+    world.node_tree.nodes["Background"].inputs["Strength"].default_value = 2
     scene.world = world
     result["world"] = compared("shaded")
     return result

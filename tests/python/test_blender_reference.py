@@ -3,7 +3,8 @@
 import os
 
 import pytest
-from blender_runs import VERSIONS, run_check
+from blender_runs import SCRIPTS, VERSIONS, run_check, run_in_window
+from repository import ROOT
 
 
 @pytest.fixture(scope="module", params=VERSIONS)
@@ -91,3 +92,24 @@ def test_povray_is_missing(version, tmp_path, monkeypatch):
         assert "POV-Ray 3.7 was not found" in numbers["error"]
         assert "add-on's preferences" in numbers["error"]
     assert found["left"]
+
+
+@pytest.fixture(scope="module")
+def window(tmp_path_factory):
+    user = tmp_path_factory.mktemp("window") / "user"
+    words = (SCRIPTS / "gui_reference.py", ROOT / "blender_addon")
+    return run_in_window(*words, user_folder=user, size=(1280, 800), limit=300)[0]
+
+
+def test_escape_stops_povray(window):
+    assert window["cancelled"]
+    assert not window["left"]
+    assert window["seconds to cancel"] < 2  # the key's way through X11 and a busy machine included
+    assert window["seconds to end POV-Ray"] < 0.5
+
+
+def test_a_window_shows_difference_and_numbers(window):
+    check_agrees(window["numbers"], median=1.0, outline=0.99)
+    assert window["image"] == "sardf difference ×16"
+    assert window["scene"] == "Scene"
+    assert window["reference"] == window["difference"] == ["FINISHED"]

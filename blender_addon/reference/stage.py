@@ -194,10 +194,12 @@ def _parts(context, depsgraph, texels):
 
 def baked_of(part):
     """The mesh object that a bake left under a part, or None."""
-    return next(
-        (i for i in part.children if i.type == "MESH" and assemble.SOURCE in i and i.users_scene),
-        None,
-    )
+    made = [
+        item for item in part.children
+        if item.type == "MESH" and assemble.SOURCE in item and item.users_scene
+    ]  # fmt: skip
+    last = part.sardf_part.baked
+    return last if last in made else next(iter(made), None)
 
 
 def _others(context, parts):

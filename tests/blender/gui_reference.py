@@ -26,7 +26,7 @@ def watch_panel():
     from sardf_blender.reference import reference_panel
 
     original = reference_panel._Panel.draw
-    reference_panel._Panel.bl_category = "Item"
+    reference_panel._Panel.bl_category = "Tool"
     reference_panel._Panel.bl_options = set()
 
     def draw(self, context):
@@ -72,7 +72,7 @@ def scenario():
     second.type = "IMAGE_EDITOR"
     scene = bpy.context.scene
     bpy.data.objects.remove(bpy.data.objects["Cube"])
-    reference.add_part("ball", "sphere", (0.8, 0.2, 0.1))
+    reference.add_part("ball", "sphere", (0.8, 0.2, 0.1), size=(2, 2, 2))
     reference.add_light("AREA", (2, -3, 5), energy=300)
     scene.world.use_nodes = False
     scene.sardf.resolution, scene.sardf.size = 24, "256"

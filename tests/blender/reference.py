@@ -2,11 +2,13 @@
 """Parts rendered in POV-Ray by a Blender scene's camera and lights, and compared with Cycles: what
 each check below finds, as numbers and texts."""
 
+import json
 import math
 from pathlib import Path
 
 import bpy
 from mathutils import Euler, Matrix, Vector
+from sardf_blender import headless
 from sardf_blender.parts import part_lists, part_objects
 from sardf_blender.reference import compare, pictures
 
@@ -235,6 +237,26 @@ def missing():
     result = compared()
     scene.sardf_reference.compare = False
     return {"compared": result, "alone": compared(), "left": counts() == before}
+
+
+def command(folder):
+    """The command's exit codes, and the names and numbers of what it wrote."""
+    start()
+    add_part("ball", "sphere", (0.2, 0.4, 0.8))
+    add_light("SUN", (1, -2, 5), energy=3)
+    path = str(Path(folder) / "ball.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    output = Path(folder) / "out"
+    words = ["-o", str(output), "--resolution", "32", "--size", "256", "--samples", "16"]
+    codes = [
+        headless.main([scene, *words], command="reference")
+        for scene in (path, str(Path(folder) / "none.blend"), "scene.json")
+    ]
+    numbers = {
+        look: json.loads((output / f"numbers_{look}.json").read_text())
+        for look in ("flat", "shaded")
+    }
+    return {"codes": codes, "files": sorted(f.name for f in output.iterdir()), "numbers": numbers}
 
 
 def main(check, *arguments):

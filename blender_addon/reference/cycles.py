@@ -22,6 +22,10 @@ class NoPicture(Exception):
 def picture(context, names, look, samples, size, path):
     """Render the objects of some names in a look into `path`, a .exr file, under the lights, the
     world and the camera of the context's scene. Raises NoPicture."""
+    if not hasattr(bpy.types.Scene, "cycles"):
+        raise NoPicture(
+            "Cycles is not there to compare with; enable the add-on Cycles Render Engine"
+        )
     items = [_object(name) for name in names]
     if context.scene.camera is None:
         raise NoPicture(f"the scene '{context.scene.name}' has no camera any more")

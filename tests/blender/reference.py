@@ -181,7 +181,7 @@ def leaves():
         result["counts"].append(counts())
     after = (scene.render.engine, scene.view_settings.view_transform, scene.render.filepath)
     result["settings"] = before == after
-    result["user's image"] = list(other.size)
+    result["user's image"] = [other.name, *other.size]
     reference = pictures.find("reference")
     result["images"] = {kind: pictures.find(kind).name for kind in pictures.NAMES}
     result["size"] = list(reference.size)

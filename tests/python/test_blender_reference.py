@@ -58,7 +58,7 @@ def test_what_is_left_behind(version, tmp_path):
     found = run_check(version, tmp_path, "reference", "leaves")
     assert found["counts"][0] == found["counts"][1] == found["counts"][2]
     assert found["settings"]
-    assert found["user's image"] == [4, 4]
+    assert found["user's image"] == ["sardf reference", 4, 4]
     assert found["images"]["reference"] == "sardf reference.001"  # the user's keeps its name
     assert found["images"]["difference"] == "sardf difference ×16"
     assert found["size"] == [160, 120]

@@ -176,6 +176,8 @@ def reference(options):
     signals = outputs.Signals()
     sources.register()
     if options.scene:
+        if not options.scene.lower().endswith(".blend"):
+            raise Stop(WRONG_INPUT, f"{options.scene}: expected a .blend file")
         sources.open_file(options.scene)
     settings = bpy.context.scene.sardf
     settings.resolution, settings.sections = options.resolution, options.section
@@ -195,6 +197,8 @@ def reference(options):
         return outputs.publish(workplace, options.output)
     except (compare.Unready, sardf.Error) as error:
         raise Stop(WRONG_INPUT, str(error)) from error
+    except OSError as error:
+        raise Stop(FAILED, f"{options.output}: cannot be written: {error}") from error
     except sardf.Cancelled:
         signals.check()
         raise

@@ -22,7 +22,13 @@ class NoPicture(Exception):
 def picture(context, names, look, samples, size, path):
     """Render the objects of some names in a look into `path`, a .exr file, under the lights, the
     world and the camera of the context's scene. Raises NoPicture."""
-    items = [bpy.data.objects[name] for name in names]
+    if not hasattr(bpy.types.Scene, "cycles"):
+        raise NoPicture(
+            "Cycles is not there to compare with; enable the add-on Cycles Render Engine"
+        )
+    items = [_object(name) for name in names]
+    if context.scene.camera is None:
+        raise NoPicture(f"the scene '{context.scene.name}' has no camera any more")
     textures = [base_color(item) for item in items]
     scene = bpy.data.scenes.new(NAME)
     made = []
@@ -40,6 +46,14 @@ def picture(context, names, look, samples, size, path):
     finally:
         bpy.data.scenes.remove(scene)
         bpy.data.batch_remove(made)
+
+
+def _object(name):
+    """A baked object, which may be gone since the reference began. Raises NoPicture."""
+    item = bpy.data.objects.get(name or "")
+    if item is None or assemble.SOURCE not in item:
+        raise NoPicture(f"the baked object '{name}' is gone; bake it again")
+    return item
 
 
 def base_color(item):

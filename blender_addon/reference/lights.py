@@ -4,6 +4,7 @@
 import math
 
 FULL_SPREAD = math.pi - 1e-4  # what an area light has unless it is narrowed
+SAME_SCALE = 1e-4  # relative difference of the axes of a round spot
 SHAPES = {"SQUARE": "rectangle", "RECTANGLE": "rectangle", "DISK": "ellipse", "ELLIPSE": "ellipse"}
 
 
@@ -37,8 +38,8 @@ def rendered(view_layer):
 def light_of(item):
     """(light or None, warnings): a light object as a dictionary."""
     data = item.data
-    warnings = _unsupported(item.name, data)
-    if getattr(data.cycles, "is_portal", False):
+    warnings = _unsupported(item, data)
+    if getattr(_cycles(data), "is_portal", False):
         return None, [f"the light '{item.name}' is a portal: it is left out"]
     light = {
         "name": item.name,
@@ -75,12 +76,23 @@ def _shape(data):
 
 def _casts_shadow(data):
     """Cycles' own property until Blender 4.1, then the light's."""
-    return bool(getattr(data.cycles, "cast_shadow", data.use_shadow))
+    return bool(getattr(_cycles(data), "cast_shadow", data.use_shadow))
 
 
-def _unsupported(name, data):
+def _cycles(data):
+    """Cycles' properties of a light, or None where that add-on is not enabled."""
+    return getattr(data, "cycles", None)
+
+
+def _unsupported(item, data):
     """What of a light is not carried over, in sentences."""
-    warnings = []
+    warnings, name = [], item.name
+    scale = item.matrix_world.to_scale()
+    if data.type == "SPOT" and max(scale) - min(scale) > SAME_SCALE * max(scale):
+        warnings.append(f"the uneven scale of the light '{name}' is not carried over")
+    linking = getattr(item, "light_linking", None)  # since Blender 4.0
+    if linking and (linking.receiver_collection or linking.blocker_collection):
+        warnings.append(f"the light linking of '{name}' is not carried over")
     if data.type == "AREA" and data.spread < FULL_SPREAD:
         warnings.append(f"the spread of the light '{name}' is not carried over")
     if not getattr(data, "normalize", True):

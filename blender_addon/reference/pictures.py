@@ -39,10 +39,17 @@ def keep(kind, image, look):
     if earlier is not None:
         earlier.user_remap(image)  # what shows the last one shows this one
         bpy.data.images.remove(earlier)
-    image.name = NAMES[kind]
+    image.name = _free_name(NAMES[kind], image)
     image[MARK] = look
     image.use_fake_user = True
     return image
+
+
+def _free_name(name, image):
+    """A name that takes no other image's: some versions of Blender would rename that one."""
+    known = {each.name for each in bpy.data.images if each != image}
+    names = [name, *(f"{name}.{number:03}" for number in range(1, len(known) + 2))]
+    return next(each for each in names if each not in known)
 
 
 def find(kind):

@@ -24,12 +24,12 @@ class _Panel:
         column = layout.column()
         column.enabled = reference_operators.SARDF_OT_reference.work is None
         column.prop(settings, "look")
-        column.prop(settings, "light_samples")
-        column.prop(settings, "compare")
+        column.prop(settings, "light_samples", text="Lights")
+        column.prop(settings, "compare", text="Compare")
         more = column.column()
         more.enabled = settings.compare
-        more.prop(settings, "keep_cycles")
-        more.prop(settings, "samples")
+        more.prop(settings, "keep_cycles", text="Keep Cycles")
+        more.prop(settings, "samples", text="Samples")
         self._draw_button()
         self._draw_pictures()
         self._draw_numbers(settings)

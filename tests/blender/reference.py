@@ -2,11 +2,13 @@
 """Parts rendered in POV-Ray by a Blender scene's camera and lights, and compared with Cycles: what
 each check below finds, as numbers and texts."""
 
+import json
 import math
 from pathlib import Path
 
 import bpy
 from mathutils import Euler, Matrix, Vector
+from sardf_blender import headless
 from sardf_blender.parts import part_lists, part_objects
 from sardf_blender.reference import compare, pictures
 
@@ -109,7 +111,10 @@ LIGHTS = {
     "point": ("POINT", {"energy": 800, "color": (1, 0.8, 0.6), "shadow_soft_size": 0}),
     "soft point": ("POINT", {"energy": 800, "shadow_soft_size": 0.6}),
     "sun": ("SUN", {"energy": 2, "angle": 0.05}),
-    "spot": ("SPOT", {"energy": 1500, "spot_size": 0.5, "spot_blend": 0.6}),
+    "spot": (
+        "SPOT",
+        {"energy": 1500, "spot_size": 0.5, "spot_blend": 0.6, "shadow_soft_size": 0.05},
+    ),
     "rectangle": ("AREA", {"energy": 500, "shape": "RECTANGLE", "size": 2, "size_y": 1}),
     "disk": ("AREA", {"energy": 500, "shape": "DISK", "size": 2}),
 }
@@ -129,7 +134,9 @@ def lights(folder):
         save(folder, name)
         bpy.data.objects.remove(light)
     world = bpy.data.worlds.new("plain")
-    world.color = (0.2, 0.3, 0.5)
+    world.use_nodes = True
+    world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.1, 0.15, 0.25, 1)
+    world.node_tree.nodes["Background"].inputs["Strength"].default_value = 2
     scene.world = world
     result["world"] = compared("shaded")
     return result
@@ -174,7 +181,7 @@ def leaves():
         result["counts"].append(counts())
     after = (scene.render.engine, scene.view_settings.view_transform, scene.render.filepath)
     result["settings"] = before == after
-    result["user's image"] = list(other.size)
+    result["user's image"] = [other.name, *other.size]
     reference = pictures.find("reference")
     result["images"] = {kind: pictures.find(kind).name for kind in pictures.NAMES}
     result["size"] = list(reference.size)
@@ -230,6 +237,26 @@ def missing():
     result = compared()
     scene.sardf_reference.compare = False
     return {"compared": result, "alone": compared(), "left": counts() == before}
+
+
+def command(folder):
+    """The command's exit codes, and the names and numbers of what it wrote."""
+    start()
+    add_part("ball", "sphere", (0.2, 0.4, 0.8))
+    add_light("SUN", (1, -2, 5), energy=3)
+    path = str(Path(folder) / "ball.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    output = Path(folder) / "out"
+    words = ["-o", str(output), "--resolution", "32", "--size", "256", "--samples", "16"]
+    codes = [
+        headless.main([scene, *words], command="reference")
+        for scene in (path, str(Path(folder) / "none.blend"), "scene.json")
+    ]
+    numbers = {
+        look: json.loads((output / f"numbers_{look}.json").read_text())
+        for look in ("flat", "shaded")
+    }
+    return {"codes": codes, "files": sorted(f.name for f in output.iterdir()), "numbers": numbers}
 
 
 def main(check, *arguments):

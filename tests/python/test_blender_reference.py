@@ -3,7 +3,8 @@
 import os
 
 import pytest
-from blender_runs import VERSIONS, run_check
+from blender_runs import SCRIPTS, VERSIONS, run_check, run_in_window
+from repository import ROOT
 
 
 @pytest.fixture(scope="module", params=VERSIONS)
@@ -57,7 +58,7 @@ def test_what_is_left_behind(version, tmp_path):
     found = run_check(version, tmp_path, "reference", "leaves")
     assert found["counts"][0] == found["counts"][1] == found["counts"][2]
     assert found["settings"]
-    assert found["user's image"] == [4, 4]
+    assert found["user's image"] == ["sardf reference", 4, 4]
     assert found["images"]["reference"] == "sardf reference.001"  # the user's keeps its name
     assert found["images"]["difference"] == "sardf difference ×16"
     assert found["size"] == [160, 120]
@@ -91,3 +92,34 @@ def test_povray_is_missing(version, tmp_path, monkeypatch):
         assert "POV-Ray 3.7 was not found" in numbers["error"]
         assert "add-on's preferences" in numbers["error"]
     assert found["left"]
+
+
+def test_the_command(version, tmp_path):
+    found = run_check(version, tmp_path, "reference", "command", tmp_path)
+    assert found["codes"] == [0, 2, 2]
+    kinds = ("cycles", "difference", "reference")
+    expected = [f"{kind}_{look}.exr" for kind in kinds for look in ("flat", "shaded")]
+    assert found["files"] == sorted([*expected, "numbers_flat.json", "numbers_shaded.json"])
+    for numbers in found["numbers"].values():
+        check_agrees(numbers, median=1.0, outline=0.995)
+
+
+@pytest.fixture(scope="module")
+def window(tmp_path_factory):
+    user = tmp_path_factory.mktemp("window") / "user"
+    words = (SCRIPTS / "gui_reference.py", ROOT / "blender_addon")
+    return run_in_window(*words, user_folder=user, size=(1280, 800), limit=300)[0]
+
+
+def test_escape_stops_povray(window):
+    assert window["cancelled"]
+    assert not window["left"]
+    assert window["seconds to cancel"] < 2  # the key's way through X11 and a busy machine included
+    assert window["seconds to end POV-Ray"] < 2  # looked for by another program
+
+
+def test_a_window_shows_difference_and_numbers(window):
+    check_agrees(window["numbers"], median=1.0, outline=0.99)
+    assert window["image"] == "sardf difference ×16"
+    assert window["scene"] == "Scene"
+    assert window["reference"] == window["difference"] == ["FINISHED"]

@@ -149,7 +149,7 @@ def test_shadows(tmp_path):
     hidden = (abs(X) < edge - 0.1) & (abs(X) > 0.3)
     assert hidden.sum() >= 2
     assert np.all(found[hidden] == 0)
-    assert np.all(found[abs(X) > edge + 0.1] > 1)
+    assert np.all(found[abs(X) > edge + 0.1] > 0.9)
     without = picture(tmp_path, [light | {"shadow": False}], parts=parts)[WIDTH // 2, :, 0]
     assert np.all(without[hidden] > 1)
 
@@ -157,17 +157,17 @@ def test_shadows(tmp_path):
 def test_parts_stand_where_their_matrices_say(tmp_path):
     """Two balls of one title and of two colours, moved, turned and scaled; flat and exact."""
     parts = []
-    for color, place, scale in ((0.25, (-1.5, 0.5, 0), 0.5), (0.75, (1, -1, 2), 1.5)):
+    for color, place, scale in ((0.25, (-1.5, 0.5, 0), 0.52), (0.75, (1, -1, 2), 1.53)):
         ball = SLAB | {"title": "ball", "fields": {"slab": {"sphere": {"radius": 1}}},
                        "materials": {"white": {"color": [color] * 3}}}  # fmt: skip
         parts.append({"scene": ball, "matrix_world": moved(*place, scale=scale)})
     found = picture(tmp_path, parts=parts, look="flat")
     x, y = np.meshgrid(X, -X)
-    first = (x + 1.5) ** 2 + (y - 0.5) ** 2 <= 0.25
-    second = (x - 1) ** 2 + (y + 1) ** 2 <= 2.25
+    first = (x + 1.5) ** 2 + (y - 0.5) ** 2 <= 0.52**2
+    second = (x - 1) ** 2 + (y + 1) ** 2 <= 1.53**2
     expected = np.where(second, 0.75, np.where(first, 0.25, 0))
     wrong = abs(found[..., 0] - expected) > 1e-3
-    assert wrong.sum() <= 4, np.argwhere(wrong)  # pixels whose centres lie on an outline
+    assert not wrong.any(), np.argwhere(wrong)
     assert np.array_equal(found[..., 3] > 0.5, found[..., 0] > 0)
 
 
@@ -187,6 +187,7 @@ def test_sections_and_turned_parts(tmp_path):
     assert (mask[upper].all(), mask[lower].any()) in ((True, False), (False, True))
 
 
+@pytest.mark.timed
 def test_progress_and_cancel(tmp_path):
     """Shares rise to 1, and saying no ends POV-Ray within 0.2 s."""
     shares = []
@@ -201,9 +202,8 @@ def test_progress_and_cancel(tmp_path):
             return False
         return True
 
-    slow = {"type": "area", "power": 100, "matrix_world": PLACE}
     with pytest.raises(sardf.Cancelled):
-        picture(tmp_path, [slow], width=2000, height=2000, light_samples=16, progress=stop)
+        picture(tmp_path, look="flat", width=4000, height=4000, progress=stop)
     assert time.monotonic() - said_no[0] < 0.2
     assert not [path for path in tmp_path.iterdir() if path.name.startswith(".")]
 

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A reference in a window: stopped by Esc, then finished, with panel and pictures drawn:
+blender --factory-startup -P gui_reference.py -- ADDON_FOLDER FOLDER RESULT.json; see gui_window.py.
+"""
+
+import importlib
+import os
+import subprocess
+import sys
+import time
+import traceback
+from pathlib import Path
+
+import bpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import addon_folder
+from gui_window import drive, result, screenshot, until, view
+
+ADDON = sys.argv[-3]
+LIMIT = 120.0  # seconds for anything at most
+result["drawn"] = 0
+
+
+def watch_panel():
+    from sardf_blender.reference import reference_panel
+
+    original = reference_panel._Panel.draw
+    reference_panel._Panel.bl_category = "Tool"
+    reference_panel._Panel.bl_options = set()
+
+    def draw(self, context):
+        try:
+            original(self, context)
+        except Exception:
+            result["errors"].append(traceback.format_exc())
+            raise
+        result["drawn"] += 1
+
+    reference_panel._Panel.draw = draw
+
+
+def running():
+    from sardf_blender.reference import reference_operators
+
+    return reference_operators.SARDF_OT_reference.work
+
+
+def povray_runs():
+    """The child processes of ours that are POV-Ray."""
+    words = ["pgrep", "-P", str(os.getpid()), "povray"]
+    return subprocess.run(words, capture_output=True, text=True).stdout.split()
+
+
+def press_escape():
+    window, area, _ = view()
+    x, y = area.x + area.width // 2, window.height - area.y - area.height // 2
+    subprocess.run(["xdotool", "mousemove", str(x), str(y), "key", "Escape"], check=True)
+
+
+def begin():
+    window, area, regions = view()
+    place = {"window": window, "area": area, "region": regions["WINDOW"]}
+    with bpy.context.temp_override(**place):
+        return bpy.ops.sardf.reference("INVOKE_DEFAULT")
+
+
+def scenario():
+    window, area, _ = view()
+    area.spaces.active.show_region_ui = True
+    second = max((a for a in window.screen.areas if a != area), key=lambda a: a.width * a.height)
+    second.type = "IMAGE_EDITOR"
+    scene = bpy.context.scene
+    bpy.data.objects.remove(bpy.data.objects["Cube"])
+    reference.add_part("ball", "sphere", (0.8, 0.2, 0.1), size=(2, 2, 2))
+    reference.add_light("AREA", (2, -3, 5), energy=300)
+    scene.world.use_nodes = False
+    scene.sardf.resolution, scene.sardf.size = 24, "256"
+    scene.sardf_reference.look = "shaded"
+    yield from stopped(scene)
+    yield from finished(scene, second)
+
+
+def stopped(scene):
+    scene.render.resolution_x, scene.render.resolution_y = 1920, 1080
+    before = reference.counts()
+    begin()
+    yield from until(lambda: povray_runs(), "POV-Ray to start", LIMIT)
+    work = running()
+    result["seen"] = []
+    end = time.monotonic() + 3
+    while time.monotonic() < end and len(set(result["seen"])) < 3:
+        result["seen"].append(work.share)
+        yield
+    screenshot("reference_running")
+    pressed = time.monotonic()
+    press_escape()
+    yield from until(lambda: running() is None, "Esc", LIMIT)
+    told = time.monotonic()
+    yield from until(lambda: not povray_runs(), "POV-Ray to end", LIMIT)
+    result["seconds to cancel"] = told - pressed
+    result["seconds to end POV-Ray"] = time.monotonic() - told
+    yield from until(lambda: not work.running, "the thread", LIMIT)
+    result["cancelled"] = work.cancelled
+    result["left"] = reference.counts() != before
+
+
+def finished(scene, editor):
+    scene.render.resolution_x, scene.render.resolution_y = 160, 120
+    scene.sardf_reference.samples = 16
+    begin()
+    yield from until(lambda: running() is None, "the reference", LIMIT)
+    yield from until(lambda: scene.sardf_reference.compared, "numbers", LIMIT)
+    result["numbers"] = {name: getattr(scene.sardf_reference, name) for name in reference.NUMBERS}
+    result["image"] = editor.spaces.active.image.name
+    result["scene"] = bpy.context.window.scene.name
+    for kind in ("reference", "difference"):
+        with bpy.context.temp_override(window=view()[0]):
+            result[kind] = list(bpy.ops.sardf.reference_show(kind=kind))
+    editor.spaces.active.show_region_ui = True
+    before = result["drawn"]
+    view()[1].tag_redraw()
+    yield from until(lambda: result["drawn"] > before, "the panel", LIMIT)
+    end = time.monotonic() + 1
+    yield from until(lambda: time.monotonic() > end, "a second", LIMIT)
+    screenshot("reference")
+
+
+bpy.context.preferences.view.show_splash = False
+addon_folder.load(ADDON, before=watch_panel)
+reference = importlib.import_module("reference")  # needs the loaded add-on
+drive(scenario(), 0.02)

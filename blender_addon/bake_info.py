@@ -9,6 +9,7 @@ is not known, and the timer starts the thread.
 import dataclasses
 import json
 import threading
+import time
 import traceback
 from pathlib import Path
 
@@ -87,6 +88,7 @@ def measure(sardf, wish, progress=None):
 _known = {}  # Wish -> Info, the last one alone
 _probe = None
 _changed = True  # whether parts may be others than `_wish` says
+_changed_at = 0.0
 _wish = {}  # what the panel shows -> its Wish
 
 
@@ -201,7 +203,9 @@ def _begin():
     from .bake_operator import SARDF_OT_bake  # which uses this module
 
     if SARDF_OT_bake.job is not None:
-        return
+        return None
+    if time.monotonic() - _changed_at < SOON:  # something is being dragged
+        return SOON
     _changed = False
     wish = _wish_of(bpy.context)
     shown = _shown(bpy.context)
@@ -217,7 +221,7 @@ def _begin():
             _remember(shown, wish, Info(error=str(error)))
         _start(_look, TICK)
     _redraw()
-    return
+    return None
 
 
 def _look():
@@ -249,8 +253,8 @@ def _redraw():
 
 @persistent
 def _anything_changed(*_):
-    global _changed
-    _changed = True
+    global _changed, _changed_at
+    _changed, _changed_at = True, time.monotonic()
 
 
 _HANDLERS = ("depsgraph_update_post", "frame_change_post", "undo_post", "redo_post", "load_post")

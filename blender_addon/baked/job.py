@@ -112,8 +112,7 @@ def _make_part(sardf, request, progress, unwrap):
     if request.osl:
         shader = _shader_of(sardf, scene, channels, warnings)
     if request.store is not None:
-        request.store.open()
-        request.store.check(image_names(scene.image_components(channels)))
+        request.store.probe(image_names(scene.image_components(channels)))
     mesh = _mesh_of(sardf, request, scene, unwrap, _between(progress, 0.0, ends[0]))
     if request.uv != ATLAS:
         warnings += sardf.check_uv_map(
@@ -125,6 +124,7 @@ def _make_part(sardf, request, progress, unwrap):
     ))  # fmt: skip
     glows = bool(np.any(maps["emission"] > 0)) if "emission" in maps else False
     if request.store is not None:
+        request.store.open()  # not before: what is stopped early has nothing to take back
         _write(sardf, request.store, maps, _between(progress, ends[1], 1.0))
     vertices = mesh.vertices
     return Part(

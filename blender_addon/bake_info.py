@@ -6,10 +6,8 @@ counts; nothing is stored in the .blend. The panel only asks: `see` starts a tim
 is not known, and the timer starts the thread.
 """
 
-import dataclasses
 import json
-import threading
-import traceback
+import time
 from pathlib import Path
 
 import bpy
@@ -17,76 +15,17 @@ from bpy.app.handlers import persistent
 
 from . import bake_plan, bake_settings, core, properties
 from .baked import assemble, groups
+from .baked.measure import Info, Probe, Wish, measure
 from .parts import part_scene, part_status
 from .parts.part_error import PartError
 
 SOON, TICK = 0.3, 0.1  # seconds until measuring begins, and between two looks at it
 
 
-@dataclasses.dataclass
-class Info:
-    """`channels`: {name: what it is}; `units`; `sample`: a sardf BakeSample; or only `error`."""
-
-    channels: dict = dataclasses.field(default_factory=dict)
-    units: str = ""
-    sample: object = None
-    error: str = ""
-
-
-@dataclasses.dataclass(frozen=True)
-class Wish:
-    """`source`: a scene file's path, or a part's scene as text; `stamp`: of the file."""
-
-    source: str
-    is_file: bool
-    stamp: int
-    sections: bool
-    channels: tuple
-
-
-class Probe:
-    """The measuring thread; `info` when it is done, None if it was stopped."""
-
-    def __init__(self, sardf, wish):
-        self.wish = wish
-        self.info = None
-        self._stop = threading.Event()
-        self._thread = threading.Thread(target=self._run, args=(sardf,), daemon=True)
-        self._thread.start()
-
-    @property
-    def running(self):
-        return self._thread.is_alive()
-
-    def stop(self):
-        self._stop.set()
-
-    def _run(self, sardf):
-        try:
-            self.info = measure(sardf, self.wish, lambda share: not self._stop.is_set())
-        except sardf.Cancelled:
-            return
-        except Exception as error:  # shown in the panel
-            if not isinstance(error, (sardf.Error, OSError)):
-                traceback.print_exception(error)  # ours to mend: show where
-            self.info = Info(error=str(error))
-
-
-def measure(sardf, wish, progress=None):
-    """The Info of a Wish. Raises sardf.Error and sardf.Cancelled."""
-    if wish.is_file:
-        scene = sardf.load(wish.source, progress)
-    else:
-        scene = sardf.Scene.from_json(wish.source, {}, progress)
-    channels = scene.channels()
-    chosen = [name for name in wish.channels if name in channels]
-    sample = sardf.measure_bake(scene, chosen, wish.sections, progress) if chosen else None
-    return Info(channels, scene.units, sample)
-
-
 _known = {}  # Wish -> Info, the last one alone
 _probe = None
 _changed = True  # whether parts may be others than `_wish` says
+_changed_at = 0.0
 _wish = {}  # what the panel shows -> its Wish
 
 
@@ -201,7 +140,9 @@ def _begin():
     from .bake_operator import SARDF_OT_bake  # which uses this module
 
     if SARDF_OT_bake.job is not None:
-        return
+        return None
+    if time.monotonic() - _changed_at < SOON:  # something is being dragged
+        return SOON
     _changed = False
     wish = _wish_of(bpy.context)
     shown = _shown(bpy.context)
@@ -217,7 +158,7 @@ def _begin():
             _remember(shown, wish, Info(error=str(error)))
         _start(_look, TICK)
     _redraw()
-    return
+    return None
 
 
 def _look():
@@ -249,8 +190,8 @@ def _redraw():
 
 @persistent
 def _anything_changed(*_):
-    global _changed
-    _changed = True
+    global _changed, _changed_at
+    _changed, _changed_at = True, time.monotonic()
 
 
 _HANDLERS = ("depsgraph_update_post", "frame_change_post", "undo_post", "redo_post", "load_post")

@@ -206,5 +206,6 @@ def register():
 
 
 def unregister():
-    stop(bpy.context)
+    if SARDF_OT_bake.job is not None:
+        stop(bpy.context)
     bpy.utils.unregister_class(SARDF_OT_bake)

@@ -8,14 +8,16 @@ import bpy
 from mathutils import Matrix
 
 from . import bake_settings, core, properties
-from .baked import assemble, exact, job, mesh_data, store, unwrap
+from .baked import assemble, exact, images, job, mesh_data, store, unwrap
 from .parts import part_bake, part_objects
 from .parts.part_error import PartError
 
 
 def expected():
     """The exceptions whose text is the message: input that is wrong, not code."""
-    found = core.MissingCore, PartError, store.StoreError, unwrap.UnwrapError
+    found = (
+        core.MissingCore, PartError, store.StoreError, unwrap.UnwrapError, images.ColorSpaceError,
+    )  # fmt: skip
     try:
         return (*found, core.load().Error)
     except core.MissingCore:

@@ -28,13 +28,21 @@ def set_units(scene, part_scene):
 
 def build_images(sardf, part, packed=True, keep=False):
     """One image for each baked texture, as {name: image}; publishes the part's files, and removes
-    them where the .blend keeps them, unless they are to be kept besides. Raises StoreError."""
+    them where the .blend keeps them, unless they are to be kept besides. Raises StoreError and
+    ColorSpaceError."""
     paths = part.store.publish(part.maps)
     built = {}
-    for name, path in paths.items():
-        built[name] = images.load(path, f"{part.name} {name}", sardf.is_color(name), packed)
+    try:
+        for name, path in paths.items():
+            built[name] = images.load(path, f"{part.name} {name}", sardf.is_color(name), packed)
+    except images.ColorSpaceError:
+        for image in built.values():
+            bpy.data.images.remove(image)
+        raise
+    finally:
         if packed and not keep:
-            path.unlink()
+            for path in paths.values():
+                path.unlink()
     return built
 
 

@@ -7,8 +7,12 @@ LINEAR_NAMES = ("Linear Rec.709", "Linear")  # Blender 4.0 renamed it
 DATA_NAMES = ("Non-Color", "Raw")
 
 
+class ColorSpaceError(Exception):
+    """The user's colour configuration has no place for the textures: one sentence."""
+
+
 def set_colorspace(image, is_color):
-    """Linear Rec. 709 for colours, Non-Color for everything else."""
+    """Linear Rec. 709 for colours, Non-Color for everything else. Raises ColorSpaceError."""
     names = LINEAR_NAMES if is_color else DATA_NAMES
     for name in names:
         try:
@@ -16,7 +20,7 @@ def set_colorspace(image, is_color):
             return
         except TypeError:  # not in this version's or the user's colour configuration
             continue
-    raise RuntimeError(f"the colour configuration has none of the spaces {', '.join(names)}")
+    raise ColorSpaceError(f"the colour configuration has none of the spaces {', '.join(names)}")
 
 
 def load(path, name, is_color, packed):
@@ -24,7 +28,11 @@ def load(path, name, is_color, packed):
     textures/NAME.exr; else it names the file, relative to a saved .blend."""
     image = bpy.data.images.load(str(path), check_existing=False)
     image.name = name
-    set_colorspace(image, is_color)
+    try:
+        set_colorspace(image, is_color)
+    except ColorSpaceError:
+        bpy.data.images.remove(image)
+        raise
     if packed:
         image.pack()
         image.filepath_raw = f"//textures/{path.name}"

@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
+from . import channels as channel_arrays
 from . import store
+from .channels import attributes_at, between, tangent_of
 
 CHANNELS = ("base_color", "roughness", "metallic", "emission", "fractions")
 NORMAL_MAP = "normal"  # a channel more: the solid's normals in the mesh's tangent space
-GRAIN = "grain_direction"  # the attribute that directs metal's reflections unless one is named
 CHECKED = 64  # cells along each side where it is looked for what sections leave
 SHARES = (0.4, 0.4, 0.2)  # of the time for mesh, textures and files, where nothing was measured
-PER_IMAGE = 3  # components of a channel that one image holds
 ATLAS, SMART, GIVEN = "atlas", "smart", "given"  # where texture coordinates come from
 POLL_SECONDS = 0.02
 
@@ -121,28 +121,28 @@ def make_part(sardf, request, progress=None, unwrap=None):
 
 
 def _make_part(sardf, request, progress, unwrap):
-    whole = sum(request.shares)
+    whole = sum(request.shares) or 1.0
     ends = [sum(request.shares[: k + 1]) / whole for k in range(3)]
-    scene, channels, warnings = _scene_of(sardf, request, _between(progress, 0.0, 0.0))
+    scene, channels, warnings = _scene_of(sardf, request, between(progress, 0.0, 0.0))
     tangent = tangent_of(scene, request.tangent)
     shader = None
     if request.osl:
         shader = _shader_of(sardf, scene, channels, warnings)
     if request.store is not None:
-        request.store.open()
-        request.store.check(image_names(scene.image_components(channels)))
-    mesh = _mesh_of(sardf, request, scene, unwrap, _between(progress, 0.0, ends[0]))
+        request.store.probe(channel_arrays.image_names(scene.image_components(channels)))
+    mesh = _mesh_of(sardf, request, scene, unwrap, between(progress, 0.0, ends[0]))
     if request.uv != ATLAS:
         warnings += sardf.check_uv_map(
-            scene, mesh, request.size, request.sections, _between(progress, ends[0], ends[0])
+            scene, mesh, request.size, request.sections, between(progress, ends[0], ends[0])
         )
-    maps = split(scene.bake(
+    maps = channel_arrays.split(scene.bake(
         mesh, size=request.size, channels=channels, sections=request.sections,
-        progress=_between(progress, ends[0], ends[1]),
+        progress=between(progress, ends[0], ends[1]),
     ))  # fmt: skip
     glows = bool(np.any(maps["emission"] > 0)) if "emission" in maps else False
     if request.store is not None:
-        _write(sardf, request.store, maps, _between(progress, ends[1], 1.0))
+        request.store.open()  # not before: what is stopped early has nothing to take back
+        channel_arrays.write(sardf, request.store, maps, between(progress, ends[1], 1.0))
     vertices = mesh.vertices
     return Part(
         name=_name_of(scene, request),
@@ -166,10 +166,6 @@ def _make_part(sardf, request, progress, unwrap):
 
 def _name_of(scene, request):
     return scene.title or Path(request.path).stem
-
-
-def _between(progress, start, stop):
-    return lambda share: progress(start + (stop - start) * share)
 
 
 def _scene_of(sardf, request, progress):
@@ -215,65 +211,6 @@ def _mesh_of(sardf, request, scene, unwrap, progress):
     if request.uv == SMART:
         mesh.uv = unwrap(mesh)
     return mesh
-
-
-def image_names(components):
-    """{image: (channel, first component)} of {channel: its number of components}: more than
-    PER_IMAGE of them become an image for each three, name_1, name_2, ..."""
-    names = {}
-    for name, count in components.items():
-        if count <= PER_IMAGE:
-            names[name] = (name, 0)
-            continue
-        for number, first in enumerate(range(0, count, PER_IMAGE), 1):
-            names[f"{name}_{number}"] = (name, first)
-    return names
-
-
-def split(maps):
-    """{image: array of 1 to 3 components} of {channel: array}."""
-    names = image_names({name: array.shape[2] for name, array in maps.items()})
-    return {
-        image: maps[name][..., first : first + PER_IMAGE] for image, (name, first) in names.items()
-    }
-
-
-def _write(sardf, target, maps, progress):
-    """Write the arrays as files, and let go of each."""
-    names = list(maps)
-    for place, name in enumerate(names):
-        part = _between(progress, place / len(names), (place + 1) / len(names))
-        sardf.write_exr(target.path(name), maps[name], part)
-        maps[name] = None
-
-
-def attributes_at(scene, points):
-    """{name: (points,) or (points, components)}; components that have names stand alone, as
-    stress_xx does."""
-    attributes = {}
-    for name, evaluate in scene.attributes.items():
-        values = evaluate(points)
-        if isinstance(values, dict):
-            attributes |= {f"{name}_{component}": of for component, of in values.items()}
-        else:
-            attributes[name] = values
-    return attributes
-
-
-def tangent_of(scene, name):
-    """The checked name of the attribute along which metal is brushed, or "" for none.
-
-    A name must be that of an attribute with 3 components: raises sardf.Error. "" stands for GRAIN
-    where the scene has such a vector of that name.
-    """
-    # sardf is found by core.load(), not when Blender reads this file.
-    from sardf._words import components_of, vector_attribute
-
-    if name:
-        vector_attribute(scene, name, (3,), "metal is brushed along")
-        return name
-    known = scene.attributes
-    return GRAIN if GRAIN in known and components_of(known[GRAIN]) == 3 else ""
 
 
 class Job:

@@ -42,6 +42,12 @@ class Store:
             self.discard()
             raise StoreError(str(stop)) from stop
 
+    def probe(self, channels):
+        """Whether these files can and may be written; leaves nothing. Raises StoreError."""
+        self.open()
+        self.discard()
+        self.check(channels)
+
     def check(self, channels):
         """Whether the files of these channels may be written. Raises StoreError."""
         for channel in channels:

@@ -92,7 +92,8 @@ void add_bake(CLI::App& app) {
   command
       ->add_option(
           "--channels", options->channels,
-          "base_color, roughness, metallic, emission, fractions, field, normal, or attributes")
+          "base_color, roughness, metallic, emission, fractions, field, normal, density, or "
+          "attributes")
       ->delimiter(',')
       ->capture_default_str();
   command

@@ -250,8 +250,8 @@ void bind_scenes(py::module_& m) {
            "{channel: float32 (size, size, components)}, row 0 at the top, linear. Channels: "
            "base_color, roughness, metallic, emission, fractions (as fractions_1, ... of three "
            "materials each), field, normal (a tangent-space normal map, for which the mesh needs "
-           "normals), "
-           "and attributes by name.")
+           "normals), density where every material states one, and attributes by name: see "
+           "channels().")
       .def("camera", &camera, py::arg("width") = 640, py::arg("height") = 480,
            "A camera that frames the object: matrix_world, lens (mm), sensor_width, ...")
       .def("povray", &write_povray, py::arg("path"), py::arg("render") = "",

@@ -20,7 +20,8 @@ namespace {
 std::string osl_number(double value) {
   constexpr double largest = 3.4e38;
   const double limited = std::clamp(value, -largest, largest);
-  std::string text = number_text(static_cast<float>(std::isnan(value) ? 0 : limited));
+  std::string text;
+  append_number(text, static_cast<float>(std::isnan(value) ? 0 : limited));
   if (text.find_first_of(".e") == std::string::npos) text += ".0";
   return text[0] == '-' ? "(" + text + ")" : text;
 }

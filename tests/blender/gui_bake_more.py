@@ -96,6 +96,7 @@ def scenario():
         yield from deleted_part(settings, Path(folder))
         yield from disabled_addon(settings, Path(folder))
         yield from finished(settings, target)
+        yield from unwrapped(settings)
         yield from nodes(window, area)
 
 
@@ -195,6 +196,26 @@ def finished(settings, target):
         bpy.ops.ed.redo()
         yield from redrawn()
     result["redone"] = item_name() == result["baked"][0]
+
+
+def unwrapped(settings):
+    """Smart UV Project waits for Object Mode, and leaves the selection as it was till the end."""
+    settings.uv_source, settings.destination = "SMART", "PACKED"
+    with bpy.context.temp_override(**place):
+        bpy.ops.mesh.primitive_cube_add()
+        cube = bpy.context.view_layer.objects.active
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.ed.undo_push(message="before the bake")
+    job = start()
+    yield from until(lambda: job.to_unwrap is not None, "the mesh", LIMIT)
+    yield from until(lambda: "Object Mode" in bake_class().stage, "the wish for Object Mode", LIMIT)
+    result["mode"] = cube.mode
+    with bpy.context.temp_override(**place):
+        bpy.ops.object.mode_set(mode="OBJECT")
+    yield from ended(job)
+    item = bpy.context.view_layer.objects.active
+    result["smart"] = [item.name, item.data.uv_layers[0].name, len(bpy.data.meshes)]
+    result["smart images"] = sorted(image.name for image in bpy.data.images if image.packed_file)
 
 
 def item_name():

@@ -65,7 +65,7 @@ def test_cost_grows_with_what_is_asked_for(sample):
     assert large.bake_seconds == pytest.approx(16 * small.bake_seconds)
     assert large.store_seconds == pytest.approx(16 * small.store_seconds)
     assert large.texels_per_unit == pytest.approx(4 * small.texels_per_unit)
-    assert large.bytes > 10 * small.bytes
+    assert large.bytes > 9 * small.bytes
     assert given.mesh_seconds == 0
     assert given.seconds < small.seconds
     known = sample.cost(64, 1024, texels_per_unit=10.0)

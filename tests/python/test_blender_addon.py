@@ -64,7 +64,7 @@ def window(zips, tmp_path_factory):
     install_for_window(zips, user)
     scene = write_scene(folder, GRADED_SPHERE)
     script = SCRIPTS / "gui_bake.py"
-    return run_in_window(script, scene, user_folder=user, size=(1280, 800), limit=400)[0]
+    return run_in_window(script, scene, user_folder=user, size=(1280, 1200), limit=400)[0]
 
 
 def test_a_click_on_bake_makes_the_part_in_one_undo_step(window):
@@ -90,7 +90,7 @@ def test_screenshot_shows_panel_and_baked_colours(window):
         ["convert", str(SCREENSHOTS / "baked.png"), "-depth", "8", "rgb:-"],
         capture_output=True, check=True,
     ).stdout  # fmt: skip
-    picture = np.frombuffer(raw, np.uint8).reshape(800, 1280, 3).astype(float)
+    picture = np.frombuffer(raw, np.uint8).reshape(1200, 1280, 3).astype(float)
     points = np.array([point for point, _ in window["seen"]])
     column, row = np.array([pixel for _, pixel in window["seen"]]).astype(int).T
     clear = (column > 60) & (column < 700)  # of toolbar, gizmos and sidebar
@@ -100,7 +100,7 @@ def test_screenshot_shows_panel_and_baked_colours(window):
     error = np.abs(picture[row, column][clear] - encoded * 255).max(axis=1)
     assert np.median(error) < 2
     assert np.percentile(error, 90) < 6  # the grid's axis and the cursor cover some
-    sidebar = picture[90:450, 840:1030].min(axis=-1)
+    sidebar = picture[90:1000, 840:1030].min(axis=-1)
     assert 0.005 < (sidebar > 180).mean() < 0.2
 
 

@@ -62,6 +62,12 @@ def test_a_bake_into_a_folder_is_one_undo_step(window):
     assert window["redone"]
 
 
+def test_smart_uv_project_waits_for_object_mode(window):
+    assert window["mode"] == "EDIT"
+    assert window["smart"][:2] == ["graded sphere", "UVMap"]
+    assert len(window["smart images"]) == 6
+
+
 def test_drawn_nodes_do_not_overlap_and_stand_in_their_frames_apart(window):
     boxes = {name: box for name, box in window["nodes"].items() if box[5] != "FRAME"}
     assert len(boxes) > 12

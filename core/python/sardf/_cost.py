@@ -16,7 +16,7 @@ TEXELS = (128, 512)  # along a side of the two textures that are baked of the se
 ATLAS = 1024  # along a side of the texture that atlases are made for
 # Bytes, as measured (tests/python/test_cost.py measures them again).
 PER_FACE = 900  # of a mesh while its atlas is made
-PER_BAKED_FACE = 750  # of a mesh with its texture coordinates, sorted into texels
+PER_BAKED_FACE = 700  # of a mesh with its texture coordinates, sorted into texels
 PER_TEXEL = 1  # whether it has a value
 FLOAT = 4
 ATLAS_USED = 0.7  # share of the image that charts cover

@@ -70,7 +70,10 @@ def button_height(x):
 
 
 def press_bake():
-    """Click the Bake button: the one that is higher than a line of the panel."""
+    """Click the Bake button: the one that is higher than a line of the panel. It moves when what
+    the bake will cost has been measured."""
+    info = addon("bake_info")
+    yield from until(lambda: info.cost(bpy.context) is not None, "the cost")
     yield from redrawn()
     window, _, regions = view()
     x = regions["UI"].x + 50  # between the button's icon and its text

@@ -119,7 +119,7 @@ def slow_core(entered):
 
     channels = dict.fromkeys(job.CHANNELS, "")
     scene = SimpleNamespace(mesh=mesh, attributes={}, channels=lambda: channels)
-    return SimpleNamespace(load=lambda path, progress: scene, Cancelled=Cancelled)
+    return SimpleNamespace(load=lambda path, progress: scene, Cancelled=Cancelled, Error=OSError)
 
 
 def test_job_stops_when_cancelled_and_keeps_errors():

@@ -207,7 +207,9 @@ def unwrapped(settings):
         bpy.ops.object.mode_set(mode="EDIT")
         bpy.ops.ed.undo_push(message="before the bake")
     job = start()
-    yield from until(lambda: job.to_unwrap is not None, "the mesh", LIMIT)
+    yield from until(lambda: job.to_unwrap is not None or not job.running, "the mesh", LIMIT)
+    if job.error is not None:
+        raise job.error
     yield from until(lambda: "Object Mode" in bake_class().stage, "the wish for Object Mode", LIMIT)
     result["mode"] = cube.mode
     with bpy.context.temp_override(**place):

@@ -18,7 +18,7 @@ def window(tmp_path_factory):
     folder = tmp_path_factory.mktemp("bake")
     result, done = run_in_window(
         SCRIPTS / "gui_bake_more.py", ROOT / "blender_addon", write_scene(folder, SCENE),
-        user_folder=folder / "user", size=(1280, 1000), limit=500,
+        user_folder=folder / "user", size=(1280, 1000), limit=560,
     )  # fmt: skip
     assert "Traceback" not in done.stdout + done.stderr
     return result

@@ -28,7 +28,7 @@ def rendered(request, tmp_path_factory):
     said = run_check(request.param, folder, "animation", "make", blend)
     camera.write_text(json.dumps(CAMERA))
     words = (blend, "-o", folder / "all", *SMALL, "--camera", camera, "--frames", 1, 24)
-    done = run_script(request.param, HEADLESS, *words, user_folder=folder / "user")
+    done = run_script(request.param, HEADLESS, *words, user_folder=folder / "user", limit=1500)
     assert done.returncode == 0, done.stdout + done.stderr
     # As a command of Blender 4.2 and later, which is run here in a session of its own.
     words = ("render", blend, "-o", folder / "alone", *SMALL, "--camera", camera)

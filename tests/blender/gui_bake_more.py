@@ -86,23 +86,27 @@ def scenario():
     area.spaces.active.show_region_ui = True
     place.update(window=window, area=area, region=regions["WINDOW"])
     bpy.data.meshes.remove(bpy.data.meshes["Cube"])
-    settings = bpy.context.scene.sardf
-    settings.filepath = SCENE
-    settings.channels = CHANNELS
+    settings().filepath = SCENE
+    settings().channels = CHANNELS
     with tempfile.TemporaryDirectory() as folder:
         target = Path(folder) / "new" / "textures"
-        settings.destination, settings.folder = "FOLDER", str(target)
-        yield from panel_before_a_bake(settings)
-        yield from escape(settings, Path(folder))
-        yield from deleted_part(settings, Path(folder))
-        yield from disabled_addon(settings, Path(folder))
-        yield from finished(settings, target)
-        yield from unwrapped(settings)
+        settings().destination, settings().folder = "FOLDER", str(target)
+        yield from panel_before_a_bake()
+        yield from escape(Path(folder))
+        yield from deleted_part(Path(folder))
+        yield from disabled_addon(Path(folder))
+        yield from finished(target)
+        yield from unwrapped()
         yield from nodes(window, area)
 
 
-def panel_before_a_bake(settings):
-    settings.resolution, settings.size = 256, "4096"
+def settings():
+    """As they are now: undo, and an add-on that is registered again, make them anew."""
+    return bpy.context.scene.sardf
+
+
+def panel_before_a_bake():
+    settings().resolution, settings().size = 256, "4096"
     yield from redrawn()
     info = module("bake_info")
     yield from until(lambda: info.cost(bpy.context) is not None, "the estimate", LIMIT)
@@ -111,14 +115,14 @@ def panel_before_a_bake(settings):
     screenshot("bake_panel")
 
 
-def escape(settings, folder):
+def escape(folder):
     """In the middle of the mesh, of the textures and of the files."""
     before = contents()
     result["interrupted"], result["seconds to cancel"] = [], []
     for share, resolution, size in ((0.02, 256, "4096"), (0.5, 48, "2048"), (0.85, 48, "4096")):
-        settings.resolution, settings.size = resolution, size
+        settings().resolution, settings().size = resolution, size
         if share > 0.6:
-            settings.channels = "base_color, fractions"
+            settings().channels = "base_color, fractions"
         job = start()
         yield from until(lambda job=job, s=share: job.share > s or not job.running, "work", LIMIT)
         yield from redrawn()
@@ -133,7 +137,7 @@ def escape(settings, folder):
         yield from until(lambda stopped=stopped: stopped, "the watcher to see the end", LIMIT)
         result["seconds to cancel"] += stopped
         result["cancelled"] = result.get("cancelled", True) and job.cancelled
-    settings.channels = CHANNELS
+    settings().channels = CHANNELS
     result["left by Esc"] = [contents() != before, [str(p) for p in folder.rglob("*")]]
 
 
@@ -158,11 +162,11 @@ def watch_end(job, stopped):
     threading.Thread(target=look, daemon=True).start()
 
 
-def deleted_part(settings, folder):
+def deleted_part(folder):
     with bpy.context.temp_override(**place):
         bpy.ops.sardf.part_import(filepath=SCENE)
         part = bpy.context.view_layer.objects.active
-        settings.resolution = 200
+        settings().resolution = 200
         job = start()
         yield from until(lambda: job.share > 0, "the bake to begin", LIMIT)
         bpy.data.objects.remove(part)
@@ -170,7 +174,7 @@ def deleted_part(settings, folder):
     result["deleted part"] = [said[-1], [str(p) for p in folder.rglob("*")]]
 
 
-def disabled_addon(settings, folder):
+def disabled_addon(folder):
     job = start()
     yield from until(lambda: job.share > 0, "the bake to begin", LIMIT)
     sys.modules["sardf_blender"].unregister()
@@ -182,8 +186,8 @@ def disabled_addon(settings, folder):
     yield from redrawn()
 
 
-def finished(settings, target):
-    settings.resolution, settings.size = 24, "512"
+def finished(target):
+    settings().resolution, settings().size = 24, "512"
     with bpy.context.temp_override(**place):
         bpy.context.view_layer.objects.active = None
         bpy.ops.ed.undo_push(message="before the bake")
@@ -202,9 +206,9 @@ def finished(settings, target):
     result["redone"] = item_name() == result["baked"][0]
 
 
-def unwrapped(settings):
+def unwrapped():
     """Smart UV Project waits for Object Mode, and leaves the selection as it was till the end."""
-    settings.uv_source, settings.destination = "SMART", "PACKED"
+    settings().uv_source, settings().destination = "SMART", "PACKED"
     with bpy.context.temp_override(**place):
         bpy.ops.mesh.primitive_cube_add()
         cube = bpy.context.view_layer.objects.active

@@ -178,7 +178,9 @@ TEST(LipschitzBound, OfBlendsHoldsForGradientsOfAnyLength) {
              constant(r.uniform(-2, 2)) * z + constant(r.uniform(-0.2, 0.2));
     };
     const char* names[] = {"sardf", "sardf_c1", "smooth", "min_max"};
-    const BlendPointer blend = make_blend(r.one_of(names), {});
+    const std::string name = r.one_of(names);
+    const std::vector<Value> radius{r.uniform(0.1, 1)};
+    const BlendPointer blend = make_blend(name, name == "min_max" ? std::vector<Value>{} : radius);
     const OperationPointer of[] = {blend->intersection, blend->unite, blend->difference};
     const Evaluator f(call(of[r.below(3)], {plane(), plane()}));
     const BoundingBox box{{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}};

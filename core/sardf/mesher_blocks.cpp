@@ -16,7 +16,7 @@ namespace {
 
 // What a cell with surface takes in all stages together (measured), and how many there are at
 // least and at most in a node of n cells cubed that was not dropped, in units of n².
-constexpr double bytes_per_cell = 450;
+constexpr double bytes_per_cell = 260;
 constexpr double fewest_cells = 0.1, most_cells = 0.8;
 
 // Where a field is this much steeper than a distance, intervals drop nodes that its values do not.
@@ -26,8 +26,6 @@ constexpr double steep = 1.2;
 constexpr size_t short_program = 4;
 // How far beyond its node a program is good, in cells: rounded points stay within.
 constexpr double room_in_cells = 0.125;
-// Parts of blocks get programs of their own where the block's is longer than this.
-constexpr size_t long_program = 12;
 
 ProgramPointer if_shorter(Evaluator program, size_t steps) {
   if (program.tape().instructions().size() >= steps) return nullptr;

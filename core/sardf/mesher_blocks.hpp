@@ -13,6 +13,9 @@ std::vector<Index3> find_blocks(Field& field, const Grid& grid, size_t memory_li
 inline constexpr int block_level = 2;
 static_assert(Programs::least_cells << block_level == block_cells);
 
+/// Parts of blocks get programs of their own where the block's has more instructions than this.
+inline constexpr size_t long_program = 12;
+
 struct NodeProgram {
   Index3 node;
   int level;

@@ -1,6 +1,8 @@
 // Samples the blocks and lists the cells with surface and the grid edges that it crosses.
 #include <algorithm>
 #include <bit>
+#include <cstring>
+#include <unordered_set>
 
 #include "sardf/mesher_blocks.hpp"
 
@@ -13,13 +15,19 @@ constexpr int samples = side * side * side;
 
 constexpr int sample_index(int x, int y, int z) { return x + side * (y + side * z); }
 
+// Which blocks around a block share a crossed edge with it: bit x + 3 y + 9 z, each of them 0 to 2.
+using Neighbours = uint32_t;
+
+// The corners of a cell: Cells::inside and Cells::joined.
+struct Corners {
+  uint8_t inside, joined;
+};
+
 struct Sampled {
-  Index3 block{};
-  Cells::Block occupied;
-  std::vector<Index3> at;
-  std::vector<uint8_t> inside, joined;
-  std::vector<Crossing> crossings;
-  std::vector<Index3> neighbours;  // blocks that share a crossed edge
+  Cells::Block block;
+  std::vector<Corners> corners;     // of each cell
+  std::vector<Crossing> crossings;  // their cells are numbered from 0
+  Neighbours neighbours = 0;
   std::vector<NodeProgram> programs;
 };
 
@@ -53,15 +61,11 @@ uint8_t joined_faces(uint8_t inside, const std::array<float, 8>& corner) {
   for (int axis = 0; axis < 3; ++axis) {
     const int e = 1 << (axis + 1) % 3, g = 1 << (axis + 2) % 3;
     for (int s = 0; s < 2; ++s) {
+      if (!is_ambiguous(inside, axis, s)) continue;
       const int c = s << axis;
-      const auto is_inside = [&](int k) { return (inside >> k & 1) != 0; };
-      if (is_inside(c) != is_inside(c + e + g) || is_inside(c + e) != is_inside(c + g) ||
-          is_inside(c) == is_inside(c + e)) {
-        continue;
-      }
       const double straight = double(corner[c]) * corner[c + e + g];
       const double crossed = double(corner[c + e]) * corner[c + g];
-      if (is_inside(c) ? straight > crossed : crossed > straight) {
+      if (inside >> c & 1 ? straight > crossed : crossed > straight) {
         joined |= uint8_t(1 << (2 * axis + s));
       }
     }
@@ -69,41 +73,19 @@ uint8_t joined_faces(uint8_t inside, const std::array<float, 8>& corner) {
   return joined;
 }
 
-// The blocks that share the crossed edges of the cell at `local` in its block.
-void add_neighbours(const Index3& block, const std::array<int, 3>& local, uint8_t inside,
-                    std::vector<Index3>& to) {
-  const auto is_inner = [](int i) { return i > 0 && i < block_cells - 1; };
-  if (is_inner(local[0]) && is_inner(local[1]) && is_inner(local[2])) return;
-  for (int edge = 0; edge < 12; ++edge) {
-    const int d = edge / 4, e = (d + 1) % 3, g = (d + 2) % 3;
-    const int at_e = edge & 1, at_g = edge >> 1 & 1;
-    const int corner = at_e << e | at_g << g;
-    if ((inside >> corner & 1) == (inside >> (corner + (1 << d)) & 1)) continue;
-    const bool border_e = local[e] == (at_e ? block_cells - 1 : 0);
-    const bool border_g = local[g] == (at_g ? block_cells - 1 : 0);
-    for (int k = 1; k < 4; ++k) {
-      if (((k & 1) && !border_e) || ((k & 2) && !border_g)) continue;
-      Index3 next = block;
-      if (k & 1) next[e] += at_e ? 1 : -1;
-      if (k & 2) next[g] += at_g ? 1 : -1;
-      to.push_back(next);
-    }
-  }
-}
-
-void add_crossings(const Index3& at, uint8_t inside, const std::array<float, 8>& corner,
-                   std::vector<Crossing>& to) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const bool start = inside & 1, end = (inside >> (1 << axis) & 1) != 0;
-    if (start != end) to.push_back({at, uint8_t(axis), start, corner[0], corner[1 << axis]});
-  }
-}
-
 // The signs of a block's samples, a row along x in each number: bit x is set inside.
 class Signs {
  public:
-  explicit Signs(const std::array<float, samples>& values) {
-    for (int i = 0; i < samples; ++i) rows_[i / side] |= uint16_t((values[i] >= 0) << i % side);
+  explicit Signs(const float* values) {
+    static_assert(side == 9 && std::endian::native == std::endian::little);
+    uint8_t inside[samples];
+    for (int i = 0; i < samples; ++i) inside[i] = values[i] >= 0;
+    for (int r = 0; r < side * side; ++r) {
+      uint64_t eight;
+      std::memcpy(&eight, inside + side * r, 8);
+      // The product's top byte gathers the lowest bits of the eight bytes.
+      rows_[r] = uint16_t(eight * 0x0102040810204080u >> 56 | inside[side * r + 8] << 8);
+    }
   }
 
   /// Bit x: cell x of the row of cells has corners on both sides.
@@ -117,114 +99,181 @@ class Signs {
     const auto pair = [&](int dy, int dz) { return row(y + dy, z + dz) >> x & 3; };
     return uint8_t(pair(0, 0) | pair(1, 0) << 2 | pair(0, 1) << 4 | pair(1, 1) << 6);
   }
+  /// A side of the block has a crossed edge where its samples have both signs, and so has an edge
+  /// of the block.
+  Neighbours neighbours() const {
+    Neighbours result = 0;
+    for (int x = 0; x < 3; ++x) {
+      for (int y = 0; y < 3; ++y) {
+        for (int z = 0; z < 3; ++z) {
+          const int outer = (x != 1) + (y != 1) + (z != 1);
+          if (outer < 1 || outer > 2 || !has_both(x, y, z)) continue;
+          result |= Neighbours(1) << (x + 3 * y + 9 * z);
+        }
+      }
+    }
+    return result;
+  }
 
  private:
   int row(int y, int z) const { return rows_[y + side * z]; }
 
+  // Whether the samples that are shared with that neighbour have both signs.
+  bool has_both(int x, int y, int z) const {
+    constexpr int first[] = {0, 0, side - 1}, last[] = {0, side - 1, side - 1};
+    const int mask = x == 0 ? 1 : x == 1 ? (1 << side) - 1 : 1 << (side - 1);
+    int any = 0, all = mask;
+    for (int k = first[z]; k <= last[z]; ++k) {
+      for (int j = first[y]; j <= last[y]; ++j) {
+        any |= row(j, k);
+        all &= row(j, k);
+      }
+    }
+    return (any & mask) != 0 && all != mask;
+  }
+
   std::array<uint16_t, side * side> rows_{};
 };
 
+void add_cells(const Signs& signs, const float* values, const Index3& first, Sampled& to,
+               std::vector<Edge>& edges) {
+  for (int z = 0; z < block_cells; ++z) {
+    for (int y = 0; y < block_cells; ++y) {
+      for (int row = signs.mixed(y, z); row != 0; row &= row - 1) {
+        const int x = std::countr_zero(unsigned(row));
+        const uint8_t inside = signs.inside(x, y, z);
+        const float* at = values + sample_index(x, y, z);
+        uint8_t joined = 0;
+        if (has_ambiguous_face[inside]) {
+          std::array<float, 8> corner;
+          for (int c = 0; c < 8; ++c) corner[c] = at[sample_index(c & 1, c >> 1 & 1, c >> 2)];
+          joined = joined_faces(inside, corner);
+        }
+        const uint32_t cell = uint32_t(to.corners.size());
+        to.corners.push_back({inside, joined});
+        constexpr int step[3] = {1, side, side * side};
+        for (uint8_t axis = 0; axis < 3; ++axis) {
+          const bool leaves = inside & 1, ends_inside = (inside >> (1 << axis) & 1) != 0;
+          if (leaves == ends_inside) continue;
+          edges.push_back({{first[0] + x, first[1] + y, first[2] + z}, at[0], at[step[axis]]});
+          to.crossings.push_back({cell, 0, {}, axis, leaves});
+        }
+      }
+    }
+  }
+}
+
 Sampled sample(const Field& field, const Grid& grid, const Index3& block) {
   std::array<float, samples> values;
-  const Index3 first{block[0] * block_cells, block[1] * block_cells, block[2] * block_cells};
   if (grid.single) {
     evaluate_samples<float>(field, grid, block, values.data());
   } else {
     evaluate_samples<double>(field, grid, block, values.data());
   }
   Sampled result;
-  result.block = block;
-  const Signs signs(values);
+  result.block.place = block;
+  const Signs signs(values.data());
   size_t count = 0;
   for (int z = 0; z < block_cells; ++z) {
     for (int y = 0; y < block_cells; ++y) {
-      result.occupied.occupied[z] |= uint64_t(signs.mixed(y, z)) << 8 * y;
+      result.block.occupied[z] |= uint64_t(signs.mixed(y, z)) << 8 * y;
     }
-    count += size_t(std::popcount(result.occupied.occupied[z]));
+    count += size_t(std::popcount(result.block.occupied[z]));
   }
   if (count == 0) return result;
-  result.at.reserve(count);
-  result.inside.reserve(count);
-  result.joined.reserve(count);
+  result.corners.reserve(count);
   result.crossings.reserve(count + count / 2);
-  for (int z = 0; z < block_cells; ++z) {
-    for (int y = 0; y < block_cells; ++y) {
-      for (int row = signs.mixed(y, z); row != 0; row &= row - 1) {
-        const int x = std::countr_zero(unsigned(row));
-        const uint8_t inside = signs.inside(x, y, z);
-        std::array<float, 8> corner;
-        for (int c = 0; c < 8; ++c) {
-          corner[c] = values[sample_index(x + (c & 1), y + (c >> 1 & 1), z + (c >> 2))];
-        }
-        const Index3 at{first[0] + x, first[1] + y, first[2] + z};
-        result.at.push_back(at);
-        result.inside.push_back(inside);
-        result.joined.push_back(joined_faces(inside, corner));
-        add_crossings(at, inside, corner, result.crossings);
-        add_neighbours(block, {x, y, z}, inside, result.neighbours);
-      }
-    }
-  }
-  std::sort(result.neighbours.begin(), result.neighbours.end());
-  result.neighbours.erase(std::unique(result.neighbours.begin(), result.neighbours.end()),
-                          result.neighbours.end());
-  shorten_parts(field, block, result.occupied.occupied, result.programs);
+  std::vector<Edge> edges;
+  edges.reserve(count + count / 2);
+  const Index3 first{block[0] * block_cells, block[1] * block_cells, block[2] * block_cells};
+  add_cells(signs, values.data(), first, result, edges);
+  locate(field, grid, field.program(block, block_level), edges.data(), edges.size(),
+         result.crossings.data());
+  result.neighbours = signs.neighbours();
+  shorten_parts(field, block, result.block.occupied, result.programs);
   return result;
 }
 
-void reserve_for(const std::vector<Sampled>& parts, Cells& cells) {
-  size_t count = cells.at.size(), crossings = cells.crossings.size(), blocks = cells.blocks.size();
-  for (const Sampled& part : parts) {
-    count += part.at.size();
-    crossings += part.crossings.size();
-    blocks += !part.at.empty();
+// Appends the parts, each at its place.
+void append(const std::vector<Sampled>& parts, Cells& cells, Work& work) {
+  struct Place {
+    size_t cell, crossing;
+  };
+  std::vector<Place> places(parts.size());
+  Place end{cells.at.size(), cells.crossings.size()};
+  for (size_t i = 0; i < parts.size(); ++i) {
+    places[i] = end;
+    if (parts[i].corners.empty()) continue;
+    end.cell += parts[i].corners.size();
+    end.crossing += parts[i].crossings.size();
+    cells.block_at[key(parts[i].block.place)] = uint32_t(cells.blocks.size());
+    cells.blocks.push_back(parts[i].block);
+    uint32_t number = uint32_t(places[i].cell);
+    for (int z = 0; z < block_cells; ++z) {
+      cells.blocks.back().first[z] = number;
+      number += uint32_t(std::popcount(parts[i].block.occupied[z]));
+    }
   }
-  cells.at.reserve(count);
-  cells.inside.reserve(count);
-  cells.joined.reserve(count);
-  cells.crossings.reserve(crossings);
-  cells.blocks.reserve(blocks);
-  cells.block_at.reserve(blocks);
-}
-
-void append(Sampled& part, Cells& cells) {
-  if (part.at.empty()) return;
-  cells.block_at[key(part.block)] = uint32_t(cells.blocks.size());
-  uint32_t number = uint32_t(cells.at.size());
-  for (int z = 0; z < block_cells; ++z) {
-    part.occupied.first[z] = number;
-    number += uint32_t(std::popcount(part.occupied.occupied[z]));
-  }
-  cells.blocks.push_back(part.occupied);
-  const auto add = [](auto& from, auto& to) { to.insert(to.end(), from.begin(), from.end()); };
-  add(part.at, cells.at);
-  add(part.inside, cells.inside);
-  add(part.joined, cells.joined);
-  add(part.crossings, cells.crossings);
-  part = {};
+  cells.at.resize(end.cell);
+  cells.inside.resize(end.cell);
+  cells.joined.resize(end.cell);
+  cells.first_crossing.resize(end.cell);
+  cells.crossings.resize(end.crossing);
+  const auto copy = [&](const Sampled& part, const Place& to) {
+    size_t i = to.cell;
+    for (const Corners& corners : part.corners) {
+      cells.inside[i] = corners.inside;
+      cells.joined[i++] = corners.joined;
+    }
+    i = to.cell;
+    for (int z = 0; z < block_cells; ++z) {
+      for (uint64_t left = part.block.occupied[z]; left != 0; left &= left - 1) {
+        const int bit = std::countr_zero(left);
+        const Index3 local{bit & 7, bit >> 3, z};
+        for (int a = 0; a < 3; ++a) {
+          cells.at[i][a] = part.block.place[a] * block_cells + local[a];
+        }
+        ++i;
+      }
+    }
+    size_t c = to.crossing;
+    i = to.cell;
+    for (Crossing crossing : part.crossings) {
+      crossing.cell += uint32_t(to.cell);
+      for (; i <= crossing.cell; ++i) cells.first_crossing[i] = uint32_t(c);
+      cells.crossings[c++] = crossing;
+    }
+  };
+  work.run(parts.size(), 16, [&](size_t first, size_t last) {
+    for (size_t i = first; i < last; ++i) copy(parts[i], places[i]);
+  });
 }
 
 }  // namespace
 
+const Cells::Block& CellFinder::block_at(const Index3& place) {
+  const int parity = (place[0] & 1) | (place[1] & 1) << 1 | (place[2] & 1) << 2;
+  const Cells::Block*& block = blocks_[size_t(parity)];
+  const auto is_at = [&](const Index3& p) {
+    return p[0] == place[0] && p[1] == place[1] && p[2] == place[2];
+  };
+  if (!block || !is_at(block->place)) block = &cells_.blocks[cells_.block_at.at(key(place))];
+  return *block;
+}
+
 uint32_t CellFinder::operator()(const Index3& cell) {
   static_assert(block_cells == 8);
-  const Index3 place{cell[0] >> 3, cell[1] >> 3, cell[2] >> 3};
-  if (place != place_) {
-    const auto found = cells_.block_at.find(key(place));
-    block_ = found == cells_.block_at.end() ? nullptr : &cells_.blocks[found->second];
-    place_ = place;
-  }
-  if (!block_) return none;
-  const int layer = cell[2] & 7, bit = (cell[0] & 7) + 8 * (cell[1] & 7);
-  const uint64_t occupied = block_->occupied[layer];
-  if (!(occupied >> bit & 1)) return none;
-  return block_->first[layer] + uint32_t(std::popcount(occupied & ((uint64_t(1) << bit) - 1)));
+  const Cells::Block& block = block_at({cell[0] >> 3, cell[1] >> 3, cell[2] >> 3});
+  const size_t layer = size_t(cell[2] & 7);
+  const int bit = (cell[0] & 7) + 8 * (cell[1] & 7);
+  const uint64_t before = (uint64_t(1) << bit) - 1;
+  return block.first[layer] + uint32_t(std::popcount(block.occupied[layer] & before));
 }
 
 Cells find_cells(Field& field, const Grid& grid, size_t memory_limit, Work& work) {
   std::vector<Index3> blocks = find_blocks(field, grid, memory_limit, work);
-  std::unordered_map<uint64_t, bool> known;
-  for (const Index3& block : blocks) known[key(block)] = true;
+  std::unordered_set<uint64_t> known;
+  for (const Index3& block : blocks) known.insert(key(block));
   Cells cells;
   // The samples are rounded: one near 0 may have another sign than was proven for the block next
   // to it. Such a block is sampled as well, so that no face lacks a vertex.
@@ -233,19 +282,20 @@ Cells find_cells(Field& field, const Grid& grid, size_t memory_limit, Work& work
     work.run(blocks.size(), 4, [&](size_t first, size_t last) {
       for (size_t i = first; i < last; ++i) parts[i] = sample(field, grid, blocks[i]);
     });
-    reserve_for(parts, cells);
+    append(parts, cells, work);
     std::vector<Index3> missing;
     for (Sampled& part : parts) {
-      for (const Index3& next : part.neighbours) {
-        const bool in_grid = next[0] >= 0 && next[1] >= 0 && next[2] >= 0 &&
-                             next[0] < grid.blocks[0] && next[1] < grid.blocks[1] &&
-                             next[2] < grid.blocks[2];
-        if (in_grid && known.emplace(key(next), true).second) missing.push_back(next);
+      for (Neighbours left = part.neighbours; left != 0; left &= left - 1) {
+        const int k = std::countr_zero(left);
+        Index3 next = part.block.place;
+        next[0] += k % 3 - 1;
+        next[1] += k / 3 % 3 - 1;
+        next[2] += k / 9 - 1;
+        if (grid.has_block(next) && known.insert(key(next)).second) missing.push_back(next);
       }
       for (NodeProgram& n : part.programs) {
         field.programs()->add(n.node, n.level, std::move(n.program));
       }
-      append(part, cells);
     }
     blocks = std::move(missing);
   }

@@ -21,21 +21,13 @@ double angle_between(const Vec3& a, const Vec3& b) {
   return std::atan2(norm(cross(a, b)), dot(a, b));
 }
 
-std::vector<FaceEdge> edges_at(const Net& net, const std::vector<uint32_t>& vertices) {
-  std::vector<uint32_t> faces;
-  for (const uint32_t v : vertices) {
-    for (uint32_t i = net.first_use[v]; i < net.first_use[v + 1]; ++i) {
-      faces.push_back(net.uses[i] / 4);
-    }
-  }
-  std::sort(faces.begin(), faces.end());
-  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+std::vector<FaceEdge> edges_of(const Mesh& mesh, const std::vector<uint32_t>& faces) {
   std::vector<FaceEdge> edges;
   for (const uint32_t face : faces) {
     for (uint32_t k = 0; k < 4; ++k) {
       uint32_t a = 4 * face + k, b = 4 * face + (k + 1) % 4;
-      if (net.faces[face][a % 4] > net.faces[face][b % 4]) std::swap(a, b);
-      edges.push_back({{net.faces[face][a % 4], net.faces[face][b % 4]}, {a, b}});
+      if (mesh.faces[face][a % 4] > mesh.faces[face][b % 4]) std::swap(a, b);
+      edges.push_back({{mesh.faces[face][a % 4], mesh.faces[face][b % 4]}, {a, b}});
     }
   }
   std::sort(edges.begin(), edges.end(), [](const FaceEdge& a, const FaceEdge& b) {
@@ -46,17 +38,17 @@ std::vector<FaceEdge> edges_at(const Net& net, const std::vector<uint32_t>& vert
 
 }  // namespace
 
-std::vector<std::array<uint32_t, 2>> find_creases(const Net& net, const Vertices& vertices,
-                                                  const std::vector<Vec3>& corner_normals) {
+std::vector<std::array<uint32_t, 2>> find_creases(const Mesh& mesh,
+                                                  const std::vector<uint32_t>& sharp_faces) {
   // An edge of two smooth vertices has one normal at either end and is no crease.
-  const std::vector<FaceEdge> edges = edges_at(net, vertices.sharp);
+  const std::vector<FaceEdge> edges = edges_of(mesh, sharp_faces);
   std::vector<std::array<uint32_t, 2>> creases;
   for (size_t i = 0; i + 1 < edges.size(); ++i) {
     const FaceEdge &a = edges[i], &b = edges[i + 1];
     if (a.vertices != b.vertices) continue;
     double sum = 0;
     for (int end = 0; end < 2; ++end) {
-      sum += angle_between(corner_normals[a.uses[end]], corner_normals[b.uses[end]]);
+      sum += angle_between(mesh.corner_normals[a.uses[end]], mesh.corner_normals[b.uses[end]]);
     }
     if (sum > 2 * crease_angle) creases.push_back(a.vertices);
   }

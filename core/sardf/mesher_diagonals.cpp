@@ -1,5 +1,6 @@
 // Which corner a quad begins with: programs split a quad from its first corner to its third.
 #include <algorithm>
+#include <cmath>
 
 #include "sardf/mesher_stages.hpp"
 
@@ -7,36 +8,43 @@ namespace sardf::mesher {
 
 namespace {
 
-// How well a triangle of corners agrees with their normals: the least cosine; -2 without area.
-double agreement(const Mesh& mesh, size_t face, const std::array<size_t, 3>& k) {
-  const auto& v = mesh.faces[face];
-  const Vec3 &a = mesh.vertices[v[k[0]]], &b = mesh.vertices[v[k[1]]], &c = mesh.vertices[v[k[2]]];
-  const Vec3 normal = cross(b - a, c - a);
-  const double length = norm(normal);
-  if (!(length > 0)) return -2;
-  double least = length;
-  for (const size_t corner : k) {
-    least = std::min(least, dot(normal, mesh.corner_normals[4 * face + corner]));
-  }
-  return least / length;
-}
-
 // Differences of rounding decide nothing: on flat faces both diagonals are as good.
 constexpr double clearly_better = 1e-9;
 
 }  // namespace
 
-void choose_diagonals(Mesh& mesh, Work& work) {
-  work.run(mesh.faces.size(), 4096, [&](size_t first, size_t last) {
-    for (size_t f = first; f < last; ++f) {
-      const double kept = std::min(agreement(mesh, f, {0, 1, 2}), agreement(mesh, f, {0, 2, 3}));
-      const double turned = std::min(agreement(mesh, f, {1, 2, 3}), agreement(mesh, f, {1, 3, 0}));
-      if (!(turned > kept + clearly_better)) continue;
-      std::rotate(mesh.faces[f].begin(), mesh.faces[f].begin() + 1, mesh.faces[f].end());
-      const auto normals = mesh.corner_normals.begin() + 4 * std::ptrdiff_t(f);
-      std::rotate(normals, normals + 1, normals + 4);
+void choose_diagonal(Mesh& mesh, size_t face) {
+  auto& v = mesh.faces[face];
+  Vec3* normals = &mesh.corner_normals[4 * face];
+  // Corners go round almost twice, so that those of a triangle are neighbours.
+  double at[3][7], normal[3][7];
+  for (size_t k = 0; k < 7; ++k) {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      at[axis][k] = mesh.vertices[v[k & 3]][axis];
+      normal[axis][k] = normals[k & 3][axis];
     }
-  });
+  }
+  // How well the triangle without corner k agrees with its corners' normals: the least cosine; -2
+  // without area.
+  const auto agreement = [&](size_t k) {
+    const auto side = [&](int axis, size_t j) { return at[axis][k + j] - at[axis][k + 1]; };
+    const double x = side(1, 2) * side(2, 3) - side(2, 2) * side(1, 3);
+    const double y = side(2, 2) * side(0, 3) - side(0, 2) * side(2, 3);
+    const double z = side(0, 2) * side(1, 3) - side(1, 2) * side(0, 3);
+    const auto along = [&](size_t j) {
+      return x * normal[0][k + j] + y * normal[1][k + j] + z * normal[2][k + j];
+    };
+    const double length = std::sqrt(x * x + y * y + z * z);
+    const double a = along(1), b = along(2), c = along(3);
+    const double ab = a < b ? a : b, least = ab < c ? ab : c;
+    return length > 0 ? least / length : -2.0;
+  };
+  const double kept = std::min(agreement(3), agreement(1));
+  if (kept >= 1 - clearly_better) return;
+  const double turned = std::min(agreement(0), agreement(2));
+  if (!(turned > kept + clearly_better)) return;
+  std::rotate(v.begin(), v.begin() + 1, v.end());
+  std::rotate(normals, normals + 1, normals + 4);
 }
 
 }  // namespace sardf::mesher

@@ -27,6 +27,39 @@ T clip_value(const BoundingBox& bounds, const Points<T>& points, size_t i, int& 
   return nearest;
 }
 
+// Whether the bounds cut off any of the points' values; most often they are far from all.
+template <class T>
+bool any_clipped(const BoundingBox& bounds, const Points<T>& points, size_t n) {
+  int clipped = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const T lo = T(bounds.lo[axis]), hi = T(bounds.hi[axis]);
+    const T* at = points.xyz[axis];
+    for (size_t i = 0; i < n; ++i) {
+      const T below = at[i] - lo, above = hi - at[i];
+      clipped |= int((above < below ? above : below) < points.value[i]);
+    }
+  }
+  return clipped != 0;
+}
+
+template <class T>
+bool contains_all(const BoundingBox& box, const Points<T>& points, size_t n) {
+  int out = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const T* at = points.xyz[axis];
+    for (size_t i = 0; i < n; ++i) {
+      out |= int(!(box.lo[axis] <= double(at[i]) && double(at[i]) <= box.hi[axis]));
+    }
+  }
+  return out == 0;
+}
+
+template <class T>
+void differentiate_solid(const Evaluator& program, Points<T>& points, size_t n) {
+  T* to[3] = {points.gradient[0], points.gradient[1], points.gradient[2]};
+  program.gradient_block(points.xyz[0], points.xyz[1], points.xyz[2], n, points.value, to);
+}
+
 bool contains(const BoundingBox& box, const Vec3& p) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!(box.lo[axis] <= p[axis] && p[axis] <= box.hi[axis])) return false;
@@ -116,10 +149,19 @@ void Field::evaluate(const Evaluator& program, Points<T>& points, size_t n) cons
 
 template <class T>
 void Field::differentiate(Points<T>& points, size_t n) const {
-  for_programs(points, n, [](const Evaluator& solid, Points<T>& at, size_t count) {
-    T* to[3] = {at.gradient[0], at.gradient[1], at.gradient[2]};
-    solid.gradient_block(at.xyz[0], at.xyz[1], at.xyz[2], count, at.value, to);
-  });
+  for_programs(points, n, differentiate_solid<T>);
+  clip(points, n);
+}
+
+template <class T>
+void Field::differentiate(const Evaluator& program, Points<T>& points, size_t n) const {
+  differentiate_solid(program, points, n);
+  clip(points, n);
+}
+
+template <class T>
+void Field::clip(Points<T>& points, size_t n) const {
+  if (!any_clipped(bounds_, points, n)) return;
   for (size_t i = 0; i < n; ++i) {
     int face;
     const T clip = clip_value(bounds_, points, i, face);
@@ -131,12 +173,39 @@ void Field::differentiate(Points<T>& points, size_t n) const {
   }
 }
 
+Field::Local Field::local(const Index3& node, int level) const {
+  const Vec3 all{infinity, infinity, infinity};
+  if (programs_) {
+    const Programs::Found found = programs_->find(node, level);
+    if (found.program) return {found.program->get(), found.valid};
+  }
+  return {&solid_, {-1.0 * all, all}};
+}
+
+template <class T>
+void Field::evaluate(const Local& local, Points<T>& points, size_t n) const {
+  if (contains_all(local.valid, points, n)) return evaluate(*local.program, points, n);
+  evaluate(points, n);
+}
+
+template <class T>
+void Field::differentiate(const Local& local, Points<T>& points, size_t n) const {
+  if (contains_all(local.valid, points, n)) return differentiate(*local.program, points, n);
+  differentiate(points, n);
+}
+
 template void Field::evaluate(Points<float>&, size_t) const;
 template void Field::evaluate(Points<double>&, size_t) const;
 template void Field::evaluate(const Evaluator&, Points<float>&, size_t) const;
 template void Field::evaluate(const Evaluator&, Points<double>&, size_t) const;
 template void Field::differentiate(Points<float>&, size_t) const;
 template void Field::differentiate(Points<double>&, size_t) const;
+template void Field::differentiate(const Evaluator&, Points<float>&, size_t) const;
+template void Field::differentiate(const Evaluator&, Points<double>&, size_t) const;
+template void Field::evaluate(const Local&, Points<float>&, size_t) const;
+template void Field::evaluate(const Local&, Points<double>&, size_t) const;
+template void Field::differentiate(const Local&, Points<float>&, size_t) const;
+template void Field::differentiate(const Local&, Points<double>&, size_t) const;
 
 Interval Field::clipped(const Interval& solid, const BoundingBox& box) const {
   Interval result = solid;
@@ -150,18 +219,6 @@ Interval Field::clipped(const Interval& solid, const BoundingBox& box) const {
 double Field::lipschitz(const BoundingBox& box) const {
   const double bound = solid_.slope(box).length;
   return bound >= 1 ? bound : bound < 1 ? 1 : infinity;
-}
-
-Vec3 outward_normal(const Vec3& gradient) {
-  const double length = norm(gradient);
-  if (!(length > 0) || !(length < infinity)) return {0, 0, 0};
-  return (-1 / length) * gradient;
-}
-
-Vec3 newton_step(double value, const Vec3& gradient) {
-  const double squared = dot(gradient, gradient);
-  if (!(squared > 0) || !(squared < infinity) || !(std::abs(value) < infinity)) return {0, 0, 0};
-  return (-value / squared) * gradient;
 }
 
 }  // namespace sardf::mesher

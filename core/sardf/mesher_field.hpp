@@ -1,6 +1,7 @@
 // The field that is meshed: the solid's, clipped by the bounds. Private to core/sardf/mesher*.cpp.
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "sardf/mesher_programs.hpp"
@@ -40,6 +41,21 @@ class Field {
   /// Values and gradients of the first n points.
   template <class T>
   void differentiate(Points<T>& points, size_t n) const;
+  template <class T>
+  void differentiate(const Evaluator& program, Points<T>& points, size_t n) const;
+
+  /// A program and where it is good.
+  struct Local {
+    const Evaluator* program;
+    BoundingBox valid;
+  };
+  /// For the points in a node of the octree, most of all.
+  Local local(const Index3& node, int level) const;
+  /// Values by the local program, of points out of its box by those that are good there.
+  template <class T>
+  void evaluate(const Local& local, Points<T>& points, size_t n) const;
+  template <class T>
+  void differentiate(const Local& local, Points<T>& points, size_t n) const;
 
   /// Encloses the values over the box, where the solid's are in this range.
   Interval clipped(const Interval& solid, const BoundingBox& box) const;
@@ -54,15 +70,26 @@ class Field {
   template <class T>
   bool find_programs(const Points<T>& points, size_t n, const Evaluator** found) const;
 
+  template <class T>
+  void clip(Points<T>& points, size_t n) const;
+
   const Evaluator& solid_;
   BoundingBox bounds_;
   std::optional<Programs> programs_;
 };
 
 /// The unit outward normal for a gradient; 0 where the gradient is 0 or not finite.
-Vec3 outward_normal(const Vec3& gradient);
+inline Vec3 outward_normal(const Vec3& gradient) {
+  const double length = norm(gradient);
+  if (!(length > 0) || !(length < infinity)) return {0, 0, 0};
+  return (-1 / length) * gradient;
+}
 
 /// From a point to the surface by one step of Newton's method; 0 where there is no gradient.
-Vec3 newton_step(double value, const Vec3& gradient);
+inline Vec3 newton_step(double value, const Vec3& gradient) {
+  const double squared = dot(gradient, gradient);
+  if (!(squared > 0) || !(squared < infinity) || !(std::abs(value) < infinity)) return {0, 0, 0};
+  return (-value / squared) * gradient;
+}
 
 }  // namespace sardf::mesher

@@ -3,6 +3,8 @@
 // A face of a cell with two inside corners across from each other is ambiguous. Where both cells at
 // it would have one piece that meets the face twice, the mesh would get an edge with four faces;
 // resolving the face the other way splits the piece in both cells and never joins any.
+#include <algorithm>
+
 #include "sardf/mesher_stages.hpp"
 
 namespace sardf::mesher {
@@ -16,12 +18,6 @@ constexpr int edge_number(int axis, int side_e, int side_g) {
 /// The edge of a cell along `axis` through corner c.
 constexpr int edge_at(int axis, int c) {
   return edge_number(axis, c >> (axis + 1) % 3 & 1, c >> (axis + 2) % 3 & 1);
-}
-
-bool is_ambiguous(uint8_t inside, int axis, int s) {
-  const int e = 1 << (axis + 1) % 3, g = 1 << (axis + 2) % 3, c = s << axis;
-  const auto at = [&](int k) { return inside >> k & 1; };
-  return at(c) == at(c + e + g) && at(c + e) == at(c + g) && at(c) != at(c + e);
 }
 
 // Sets of edges that one piece of surface crosses.
@@ -74,17 +70,18 @@ Pieces find_pieces(uint8_t inside, uint8_t joined) {
   for (int face = 0; face < 6; ++face) {
     connect_face(inside, face / 2, face % 2, joined >> face & 1, sets);
   }
-  Pieces pieces{{}, 0};
+  Pieces pieces{{}, 0, {}};
   std::array<int8_t, 12> number;
   number.fill(-1);
-  for (int edge = 0; edge < 12; ++edge) {
-    const int axis = edge / 4;
-    const int c = (edge & 1) << (axis + 1) % 3 | (edge >> 1 & 1) << (axis + 2) % 3;
-    pieces.of_edge[edge] = -1;
-    if ((inside >> c & 1) == (inside >> (c | 1 << axis) & 1)) continue;
-    int8_t& n = number[sets.root(edge)];
+  const uint16_t crossed = crossed_edges[inside];
+  for (int k = 0; k < 12; ++k) {
+    pieces.of_edge[k] = -1;
+    if (!(crossed >> k & 1)) continue;
+    int8_t& n = number[sets.root(k)];
     if (n < 0) n = int8_t(pieces.count++);
-    pieces.of_edge[edge] = n;
+    pieces.of_edge[k] = n;
+    const EdgeOfCell& edge = edges_of_cell[k];
+    pieces.sides[n] |= uint8_t(1 << (2 * edge.e + edge.side_e) | 1 << (2 * edge.g + edge.side_g));
   }
   return pieces;
 }
@@ -101,6 +98,7 @@ bool meets_twice(const Pieces& pieces, int axis, int s) {
 void settle_ambiguous_faces(Cells& cells) {
   CellFinder find(cells);
   for (uint32_t i = 0; i < cells.at.size(); ++i) {
+    if (!has_ambiguous_face[cells.inside[i]]) continue;
     for (int axis = 0; axis < 3; ++axis) {
       if (!is_ambiguous(cells.inside[i], axis, 1)) continue;
       Index3 next = cells.at[i];
@@ -118,85 +116,6 @@ void settle_ambiguous_faces(Cells& cells) {
   }
 }
 
-// Where the vertex of a piece may lie. A face's four vertices lie in the four quadrants around its
-// grid edge, so that the face, seen along the edge, is a simple polygon that is not turned over:
-// the piece's edges at a side of the cell keep the vertex from passing that side. Past a side
-// without such an edge the vertex may follow the tip of a ridge that pokes out of the cell.
-BoundingBox room_of(const Pieces& pieces, int piece, const Vec3& lo, double cell) {
-  constexpr double margin = 1e-4;
-  BoundingBox room;
-  for (int axis = 0; axis < 3; ++axis) {
-    room.lo[axis] = lo[axis] - cell;
-    room.hi[axis] = lo[axis] + 2 * cell;
-  }
-  for (int edge = 0; edge < 12; ++edge) {
-    if (pieces.of_edge[edge] != piece) continue;
-    for (int k = 0; k < 2; ++k) {
-      const int axis = (edge / 4 + 1 + k) % 3;
-      if (edge >> k & 1) {
-        room.hi[axis] = lo[axis] + (1 - margin) * cell;
-      } else {
-        room.lo[axis] = lo[axis] + margin * cell;
-      }
-    }
-  }
-  return room;
-}
-
-void make_vertices(const Cells& cells, const Grid& grid, Net& net,
-                   std::vector<uint32_t>& first_vertex, Work& work) {
-  first_vertex.resize(cells.at.size());
-  uint32_t count = 0;
-  for (size_t i = 0; i < cells.at.size(); ++i) {
-    first_vertex[i] = count;
-    count += uint32_t(pieces_of(cells.inside[i], cells.joined[i]).count);
-  }
-  net.cell.resize(count);
-  net.room.resize(count);
-  work.run(cells.at.size(), 4096, [&](size_t first, size_t last) {
-    for (size_t i = first; i < last; ++i) {
-      const Pieces pieces = pieces_of(cells.inside[i], cells.joined[i]);
-      const Vec3 lo = grid.point(cells.at[i]);
-      for (int piece = 0; piece < pieces.count; ++piece) {
-        const size_t v = first_vertex[i] + size_t(piece);
-        net.cell[v] = uint32_t(i);
-        net.room[v] = room_of(pieces, piece, lo, grid.cell);
-      }
-    }
-  });
-}
-
-std::array<uint32_t, 4> make_face(const Cells& cells, const std::vector<uint32_t>& first_vertex,
-                                  const Crossing& crossing, CellFinder& find) {
-  // Counter-clockwise seen from the end of the edge: sides of the edge in its four cells.
-  constexpr int sides[4][2] = {{1, 1}, {0, 1}, {0, 0}, {1, 0}};
-  const int axis = crossing.axis, e = (axis + 1) % 3, g = (axis + 2) % 3;
-  std::array<uint32_t, 4> face;
-  for (int k = 0; k < 4; ++k) {
-    Index3 at = crossing.at;
-    at[e] -= sides[k][0];
-    at[g] -= sides[k][1];
-    const uint32_t cell = find(at);
-    const int edge = edge_number(axis, sides[k][0], sides[k][1]);
-    const int8_t piece = pieces_of(cells.inside[cell], cells.joined[cell]).of_edge[edge];
-    face[crossing.leaves ? k : 3 - k] = first_vertex[cell] + uint32_t(piece);
-  }
-  return face;
-}
-
-void collect_uses(Net& net) {
-  net.first_use.assign(net.vertex_count() + 1, 0);
-  for (const auto& face : net.faces) {
-    for (const uint32_t v : face) ++net.first_use[v + 1];
-  }
-  for (size_t v = 0; v < net.vertex_count(); ++v) net.first_use[v + 1] += net.first_use[v];
-  net.uses.resize(4 * net.faces.size());
-  std::vector<uint32_t> next(net.first_use.begin(), net.first_use.end() - 1);
-  for (uint32_t use = 0; use < net.uses.size(); ++use) {
-    net.uses[next[net.faces[use / 4][use % 4]]++] = use;
-  }
-}
-
 }  // namespace
 
 Pieces pieces_of(uint8_t inside, uint8_t joined) {
@@ -208,23 +127,72 @@ Pieces pieces_of(uint8_t inside, uint8_t joined) {
   return joined == 0 ? separated[inside] : find_pieces(inside, joined);
 }
 
-Net build_net(Cells& cells, const Grid& grid, Work& work) {
+Net build_net(Cells& cells, Work& work) {
   settle_ambiguous_faces(cells);
   Net net;
-  std::vector<uint32_t> first_vertex;
-  make_vertices(cells, grid, net, first_vertex, work);
-  net.faces.resize(cells.crossings.size());
-  net.direction.resize(cells.crossings.size());
-  work.run(net.faces.size(), 4096, [&](size_t first, size_t last) {
-    CellFinder find(cells);
+  net.first_vertex.resize(cells.at.size());
+  uint32_t count = 0;
+  for (size_t i = 0; i < cells.at.size(); ++i) {
+    net.first_vertex[i] = count;
+    count += uint32_t(pieces_of(cells.inside[i], cells.joined[i]).count);
+  }
+  net.cell.resize(count);
+  net.sides.resize(count);
+  work.run(cells.at.size(), 4096, [&](size_t first, size_t last) {
     for (size_t i = first; i < last; ++i) {
-      const Crossing& crossing = cells.crossings[i];
-      net.faces[i] = make_face(cells, first_vertex, crossing, find);
-      net.direction[i] = int8_t(crossing.leaves ? crossing.axis + 1 : -crossing.axis - 1);
+      const Pieces pieces = pieces_of(cells.inside[i], cells.joined[i]);
+      for (int piece = 0; piece < pieces.count; ++piece) {
+        const size_t v = net.first_vertex[i] + size_t(piece);
+        net.cell[v] = uint32_t(i);
+        net.sides[v] = pieces.sides[size_t(piece)];
+      }
     }
   });
-  collect_uses(net);
   return net;
+}
+
+BoundingBox Places::room(uint32_t vertex) const {
+  return room_of(grid_, cells_.at[net_.cell[vertex]], net_.sides[vertex]);
+}
+
+bool Places::is_in_cell(uint32_t vertex, const Vec3& point) const {
+  const Index3& cell = cells_.at[net_.cell[vertex]];
+  for (int axis = 0; axis < 3; ++axis) {
+    if (point[axis] < grid_.coordinate(axis, cell[axis]) ||
+        point[axis] > grid_.coordinate(axis, cell[axis] + 1)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+Uses Places::uses(uint32_t vertex) const {
+  const uint32_t cell = net_.cell[vertex];
+  const uint8_t inside = cells_.inside[cell];
+  const int piece = int(vertex - net_.first_vertex[cell]);
+  const Pieces pieces = pieces_of(inside, cells_.joined[cell]);
+  CellFinder find(cells_);
+  Uses uses;
+  for (int k = 0; k < 12; ++k) {
+    if (pieces.of_edge[size_t(k)] != piece) continue;
+    const EdgeOfCell& edge = edges_of_cell[size_t(k)];
+    const bool leaves = inside >> edge.corner & 1;
+    const int corner = leaves ? edge.face_corner : 3 - edge.face_corner;
+    Index3 at = cells_.at[cell];
+    at[edge.e] += edge.side_e;
+    at[edge.g] += edge.side_g;
+    const uint32_t owner = edge.corner == 0 ? cell : find(at);
+    uses.at[uses.count++] = 4 * crossing_at(cells_, owner, edge.axis) + uint32_t(corner);
+  }
+  std::sort(uses.at.begin(), uses.at.begin() + uses.count);
+  return uses;
+}
+
+Vec3 Places::normal(uint32_t c) const {
+  const auto& n = cells_.crossings[c].normal;
+  const Vec3 normal{n[0], n[1], n[2]};
+  // As exact as doubles are.
+  return dot(normal, normal) > 0.5 ? normalized(normal) : Vec3{0, 0, 0};
 }
 
 }  // namespace sardf::mesher

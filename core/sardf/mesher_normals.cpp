@@ -18,15 +18,13 @@ struct Side {
 
 // The face's crossing, unless the face itself lies on the other side, as a sliver along the edge
 // may.
-Side side_of(uint32_t face, const Net& net, const CrossingPoints& crossings,
-             const Vertices& vertices) {
-  const auto& v = net.faces[face];
-  const auto& at = vertices.at;
+Side side_of(uint32_t face, const Mesh& mesh, const Places& places) {
+  const auto& v = mesh.faces[face];
+  const auto& at = mesh.vertices;
   const Vec3 own = cross(at[v[2]] - at[v[0]], at[v[3]] - at[v[1]]);
   const double length = norm(own);
-  if (!(dot(own, crossings.normal[face]) < agreeing_cosine * length)) {
-    return {crossings.at[face], crossings.normal[face]};
-  }
+  const Vec3 there = places.normal(face);
+  if (!(dot(own, there) < agreeing_cosine * length)) return {places.crossing(face), there};
   return {0.25 * (at[v[0]] + at[v[1]] + at[v[2]] + at[v[3]]), (1 / length) * own};
 }
 
@@ -56,34 +54,78 @@ Normals mean_normals(std::span<const Sample> samples, int sides) {
   return normals;
 }
 
-}  // namespace
-
-std::vector<Vec3> find_normals(const Field& field, const Grid& grid, const Net& net,
-                               const CrossingPoints& crossings, const Vertices& vertices,
-                               Work& work) {
-  std::vector<Vec3> result(net.uses.size());
-  work.run(net.faces.size(), 4096, [&](size_t first, size_t last) {
-    for (size_t face = first; face < last; ++face) {
-      for (size_t k = 0; k < 4; ++k) result[4 * face + k] = vertices.normal[net.faces[face][k]];
-    }
-  });
-  const auto side = [&](uint32_t use) { return side_of(use / 4, net, crossings, vertices); };
+// The normals of the faces' corners at sharp vertices.
+void find_sharp_normals(const Field& field, const Grid& grid, const Places& places,
+                        const Vertices& vertices, Mesh& mesh, Work& work) {
+  const auto side = [&](uint32_t use) { return side_of(use / 4, mesh, places); };
   work.run(vertices.sharp.size(), 32, [&](size_t first, size_t last) {
-    Samples samples(net, crossings, std::span(vertices.sharp).subspan(first, last - first));
+    Samples samples(places, std::span(vertices.sharp).subspan(first, last - first));
     for (size_t k = 0; k < samples.vertex_count(); ++k) {
       for (Sample& s : samples.of(k)) s.target = side(s.use).at;
     }
-    samples.take(field, vertices, nearest_distance * grid.cell);
+    samples.take(field, mesh.vertices, nearest_distance * grid.cell);
     for (size_t k = 0; k < samples.vertex_count(); ++k) {
       const int sides = find_sides(samples.of(k));
       const Normals normals = mean_normals(samples.of(k), sides);
       for (const Sample& s : samples.of(k)) {
         const Vec3 expected = side(s.use).normal;
-        result[s.use] = sides > 0 ? choose(normals, sides, s.side, expected) : expected;
+        mesh.corner_normals[s.use] =
+            sides > 0 ? choose(normals, sides, s.side, expected) : expected;
       }
     }
   });
-  return result;
+}
+
+std::vector<uint32_t> faces_at(const std::vector<uint32_t>& vertices, const Places& places) {
+  std::vector<uint32_t> faces;
+  for (const uint32_t v : vertices) {
+    for (const uint32_t use : places.uses(v)) faces.push_back(use / 4);
+  }
+  std::sort(faces.begin(), faces.end());
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  return faces;
+}
+
+// Where the field has no gradient, the face's own normal must do.
+void fill_normals(Mesh& mesh, uint32_t f) {
+  for (size_t k = 0; k < 4; ++k) {
+    Vec3& normal = mesh.corner_normals[4 * size_t(f) + k];
+    if (dot(normal, normal) > 0.5) continue;
+    const auto& face = mesh.faces[f];
+    const Vec3 n = cross(mesh.vertices[face[2]] - mesh.vertices[face[0]],
+                         mesh.vertices[face[3]] - mesh.vertices[face[1]]);
+    normal = norm(n) > 0 ? normalized(n) : Vec3{0, 0, 1};
+  }
+}
+
+}  // namespace
+
+void finish_faces(const Field& field, const Grid& grid, const Places& places,
+                  const Vertices& vertices, Mesh& mesh, Work& work) {
+  resize_large(mesh.corner_normals, 4 * mesh.faces.size());
+  const auto copy_normals = [&](size_t f) {
+    bool all_smooth = true;
+    for (size_t k = 0; k < 4; ++k) {
+      const uint32_t v = mesh.faces[f][k];
+      mesh.corner_normals[4 * f + k] = vertices.normal[v];
+      all_smooth = all_smooth && !vertices.is_sharp[v];
+    }
+    return all_smooth;
+  };
+  work.run(mesh.faces.size(), 1024, [&](size_t first, size_t last) {
+    for (size_t f = first; f < last; ++f) {
+      if (copy_normals(f)) choose_diagonal(mesh, f);
+    }
+  });
+  find_sharp_normals(field, grid, places, vertices, mesh, work);
+  const std::vector<uint32_t> faces = faces_at(vertices.sharp, places);
+  mesh.creases = find_creases(mesh, faces);
+  work.run(faces.size(), 1024, [&](size_t first, size_t last) {
+    for (size_t i = first; i < last; ++i) {
+      fill_normals(mesh, faces[i]);
+      choose_diagonal(mesh, faces[i]);
+    }
+  });
 }
 
 }  // namespace sardf::mesher

@@ -12,22 +12,20 @@ constexpr double same_side = 0.9659;
 
 }  // namespace
 
-Samples::Samples(const Net& net, const CrossingPoints& crossings,
-                 std::span<const uint32_t> vertices)
-    : vertices_(vertices) {
+Samples::Samples(const Places& places, std::span<const uint32_t> vertices) : vertices_(vertices) {
   for (const uint32_t v : vertices) {
     first_.push_back(uint32_t(samples_.size()));
-    for (uint32_t i = net.first_use[v]; i < net.first_use[v + 1]; ++i) {
-      const uint32_t c = net.uses[i] / 4;
-      samples_.push_back({net.uses[i], crossings.at[c], crossings.at[c], crossings.normal[c]});
+    for (const uint32_t use : places.uses(v)) {
+      const Vec3 at = places.crossing(use / 4);
+      samples_.push_back({use, at, at, places.normal(use / 4)});
     }
   }
   first_.push_back(uint32_t(samples_.size()));
 }
 
-void Samples::take(const Field& field, const Vertices& vertices, double distance) {
+void Samples::take(const Field& field, const std::vector<Vec3>& vertices, double distance) {
   for (size_t k = 0; k < vertex_count(); ++k) {
-    const Vec3& from = vertices.at[vertex(k)];
+    const Vec3& from = vertices[vertex(k)];
     for (Sample& sample : of(k)) {
       const Vec3 way = sample.target - from;
       const double length = norm(way);

@@ -27,7 +27,7 @@ inline constexpr int most_sides = 16;
 class Samples {
  public:
   /// At first the samples and their targets are the faces' crossings.
-  Samples(const Net& net, const CrossingPoints& crossings, std::span<const uint32_t> vertices);
+  Samples(const Places& places, std::span<const uint32_t> vertices);
 
   size_t vertex_count() const { return vertices_.size(); }
   uint32_t vertex(size_t k) const { return vertices_[k]; }
@@ -35,7 +35,7 @@ class Samples {
     return std::span(samples_).subspan(first_[k], first_[k + 1] - first_[k]);
   }
   /// Samples the field on the way from each vertex to the targets, `distance` away or there.
-  void take(const Field& field, const Vertices& vertices, double distance);
+  void take(const Field& field, const std::vector<Vec3>& vertices, double distance);
 
  private:
   std::span<const uint32_t> vertices_;

@@ -16,8 +16,8 @@ constexpr double least_area = 1e-5, least_distance = 1e-3;
 
 class Faces {
  public:
-  Faces(const Grid& grid, const Net& net, const CrossingPoints& crossings, const Vertices& vertices)
-      : grid_(grid), net_(net), crossings_(crossings), vertices_(vertices) {}
+  Faces(const Grid& grid, const Net& net, const Places& places, const Vertices& vertices)
+      : grid_(grid), net_(net), places_(places), vertices_(vertices) {}
 
   bool is_good(uint32_t face) const {
     const auto& v = net_.faces[face];
@@ -26,7 +26,7 @@ class Faces {
         if (norm(at(v[a]) - at(v[b])) < least_distance * grid_.cell) return false;
       }
     }
-    return faces_along(v, net_.direction_of(face)) || faces_along(v, crossings_.normal[face]);
+    return faces_along(v, places_.direction(face)) || faces_along(v, places_.normal(face));
   }
 
  private:
@@ -44,24 +44,23 @@ class Faces {
 
   const Grid& grid_;
   const Net& net_;
-  const CrossingPoints& crossings_;
+  const Places& places_;
   const Vertices& vertices_;
 };
 
 }  // namespace
 
-std::vector<uint32_t> vertices_to_take_back(const Grid& grid, const Net& net,
-                                            const CrossingPoints& crossings,
+std::vector<uint32_t> vertices_to_take_back(const Grid& grid, const Net& net, const Places& places,
                                             const Vertices& vertices) {
-  const Faces faces(grid, net, crossings, vertices);
+  const Faces faces(grid, net, places, vertices);
   const auto outside = [&](uint32_t v) {
-    return norm(vertices.at[v] - clamped(vertices.at[v], net.room[v]));
+    return norm(vertices.at[v] - clamped(vertices.at[v], places.room(v)));
   };
   std::vector<uint32_t> result;
   for (const uint32_t v : vertices.sharp) {
     if (outside(v) == 0) continue;
-    for (uint32_t i = net.first_use[v]; i < net.first_use[v + 1]; ++i) {
-      const uint32_t face = net.uses[i] / 4;
+    for (const uint32_t use : places.uses(v)) {
+      const uint32_t face = use / 4;
       if (faces.is_good(face)) continue;
       const auto& corners = net.faces[face];
       result.push_back(

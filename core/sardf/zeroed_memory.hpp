@@ -4,12 +4,31 @@
 #include <cstdlib>
 #include <new>
 #include <utility>
+#include <vector>
 
 #if defined(__linux__)
 #include <sys/mman.h>
 #endif
 
 namespace sardf {
+
+/// Asks for large pages where a large array has whole ones; it is no loss where the system refuses.
+inline void use_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] size_t bytes) {
+#if defined(__linux__)
+  constexpr size_t page = size_t(2) << 20;
+  const size_t begin = (reinterpret_cast<size_t>(memory) + page - 1) / page * page;
+  const size_t end = (reinterpret_cast<size_t>(memory) + bytes) / page * page;
+  if (begin < end) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+#endif
+}
+
+/// Makes an empty vector n elements long, in large pages.
+template <class T>
+void resize_large(std::vector<T>& empty, size_t n) {
+  empty.reserve(n);
+  use_large_pages(empty.data(), n * sizeof(T));
+  empty.resize(n);
+}
 
 /// An allocator for std::vector: elements that are made without a value are 0, since they lie in
 /// memory that the system hands out as zeros. Pages come into being where they are first touched,
@@ -25,13 +44,7 @@ struct ZeroedMemory {
   T* allocate(size_t n) {
     void* memory = std::calloc(n, sizeof(T));
     if (!memory) throw std::bad_alloc();
-#if defined(__linux__)
-    // Large pages where a large array has whole ones; it is no loss where the system refuses.
-    constexpr size_t page = size_t(2) << 20;
-    const size_t begin = (reinterpret_cast<size_t>(memory) + page - 1) / page * page;
-    const size_t end = (reinterpret_cast<size_t>(memory) + n * sizeof(T)) / page * page;
-    if (begin < end) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
-#endif
+    use_large_pages(memory, n * sizeof(T));
     return static_cast<T*>(memory);
   }
   void deallocate(T* memory, size_t) { std::free(memory); }

@@ -94,6 +94,7 @@ fn mesh<F: Function + MathFunction + RenderHints + Clone>(
     name: &str,
     depth: u8,
     runs: usize,
+    folder: Option<&str>,
 ) {
     let (tree, half) = shapes::shape(name);
     let mut context = Context::new();
@@ -109,19 +110,24 @@ fn mesh<F: Function + MathFunction + RenderHints + Clone>(
             world_to_model: nalgebra::Matrix4::new_nonuniform_scaling(&scale),
             ..Default::default()
         };
-        black_box(
+        let made = black_box(
             fidget::mesh::Octree::build(&bound, &settings)
                 .unwrap()
                 .walk_dual(),
         );
-        seconds() - start
+        let took = seconds() - start;
+        if let Some(folder) = folder {
+            let mut file = std::fs::File::create(format!("{folder}/{name}.stl")).unwrap();
+            made.write_stl(&mut file).unwrap();
+        }
+        took
     });
 }
 
 fn main() {
     let path = std::env::args()
         .nth(1)
-        .expect("usage: fidget_bench FIELD.vm [RUNS [mesh]]");
+        .expect("usage: fidget_bench FIELD.vm [RUNS [mesh [FOLDER]]]");
     let runs = std::env::args()
         .nth(2)
         .map_or(7, |n| n.parse().expect("RUNS is a number"));
@@ -137,8 +143,10 @@ fn main() {
     if std::env::args().nth(3).as_deref() != Some("mesh") {
         return;
     }
+    // Where the meshes are written as S1.stl, S2.stl, S3.stl, for bench/mesh_error.py.
+    let folder = std::env::args().nth(4);
     // S3 alone takes half a minute.
     for (name, times) in [("S1", 3), ("S2", 3), ("S3", 1)] {
-        mesh::<JitFunction>("compiler", name, 8, times);
+        mesh::<JitFunction>("compiler", name, 8, times, folder.as_deref());
     }
 }

@@ -136,7 +136,7 @@ def test_commands_bake_render_and_export(zips, bare_site, tmp_path):
     assert (tmp_path / "rendered/part.png").stat().st_size > 100
     assert "#include" in (tmp_path / "part.pov").read_text()
     assert json.loads((tmp_path / "copy.json").read_text())["title"] == "graded sphere"
-    assert "there is no command 'print'; render, bake, export are" in errors["unknown"]
+    assert "there is no command 'print'; render, bake, export, reference are" in errors["unknown"]
     assert "part.blend: has no part" in errors["no part"]
     assert "expected a name that ends in .json or .pov" in errors["ending"]
     assert not (tmp_path / "none").exists() or not list((tmp_path / "none").iterdir())

@@ -6,7 +6,7 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['Blend', 'Cancelled', 'Error', 'Field', 'Mesh', 'MinMax', 'RFunction', 'Sardf', 'SardfC1', 'Scene', 'Smooth', 'arc', 'at', 'bend', 'blend_error', 'boundary', 'box', 'box2d', 'bspline_curve', 'bspline_surface', 'canonical_form', 'capsule', 'circle', 'complement', 'conditioned', 'cone', 'cylinder', 'derivative', 'difference', 'disc', 'ellipse', 'ellipsoid', 'extrude', 'fitted', 'formula', 'gradient_length', 'half_plane', 'half_space', 'helix', 'implicit_polygon', 'intersection', 'load', 'loft', 'mesh_solid', 'mesh_surface', 'mirror', 'normal_derivative', 'normalized', 'offset', 'plane', 'point', 'points', 'polygon', 'polyline', 'quadric', 'r_equivalence', 'repeat', 'revolve', 'rotate', 'rounded_box', 'scale', 'schema', 'segment', 'shell', 'skeleton', 'sphere', 'spline_field', 'taylor', 'torus', 'translate', 'trimmed', 'trimmed_segment', 'twist', 'union', 'value_of', 'with_blend', 'x', 'y', 'z']
+__all__: list[str] = ['Blend', 'Cancelled', 'Error', 'Field', 'Mesh', 'MinMax', 'RFunction', 'Sardf', 'SardfC1', 'Scene', 'Smooth', 'arc', 'at', 'bend', 'blend_error', 'boundary', 'box', 'box2d', 'bspline_curve', 'bspline_surface', 'canonical_form', 'capsule', 'circle', 'compare_pictures', 'complement', 'conditioned', 'cone', 'cylinder', 'derivative', 'difference', 'disc', 'ellipse', 'ellipsoid', 'extrude', 'fitted', 'formula', 'gradient_length', 'half_plane', 'half_space', 'helix', 'implicit_polygon', 'intersection', 'is_color', 'load', 'loft', 'mesh_solid', 'mesh_surface', 'mirror', 'normal_derivative', 'normalized', 'offset', 'plane', 'point', 'points', 'polygon', 'polyline', 'povray_stage', 'quadric', 'r_equivalence', 'repeat', 'revolve', 'rotate', 'rounded_box', 'scale', 'schema', 'segment', 'shell', 'skeleton', 'sphere', 'spline_field', 'taylor', 'texels_per_unit', 'torus', 'translate', 'trimmed', 'trimmed_segment', 'twist', 'union', 'value_of', 'with_blend', 'x', 'y', 'z']
 class Error(ValueError):
     """
     Bad input. file, line and pointer say where, message what and what is accepted.
@@ -137,11 +137,23 @@ class Scene:
         """
     def bake(self, mesh: Mesh, size: typing.SupportsInt | typing.SupportsIndex = 2048, channels: collections.abc.Sequence[str] = ['base_color', 'fractions'], gutter: typing.SupportsInt | typing.SupportsIndex = 8, sections: bool = True, progress: typing.Any = None) -> dict:
         """
-        {channel: float32 (size, size, components)}, row 0 at the top, linear. Channels: base_color, roughness, metallic, emission, fractions (as fractions_1, ... of three materials each), field, normal (a tangent-space normal map, for which the mesh needs normals), and attributes by name.
+        {channel: float32 (size, size, components)}, row 0 at the top, linear. Channels: base_color, roughness, metallic, emission, fractions (as fractions_1, ... of three materials each), field, normal (a tangent-space normal map, for which the mesh needs normals), density where every material states one, and attributes by name: see channels().
         """
     def camera(self, width: typing.SupportsInt | typing.SupportsIndex = 640, height: typing.SupportsInt | typing.SupportsIndex = 480) -> typing.Any:
         """
         A camera that frames the object: matrix_world, lens (mm), sensor_width, ...
+        """
+    def channels(self) -> dict:
+        """
+        {name: what it is} of all that bake() accepts for this scene.
+        """
+    def check_surface(self, mesh: Mesh, tolerance: typing.SupportsFloat | typing.SupportsIndex, sections: bool = True) -> dict:
+        """
+        How far the mesh's vertices lie off the solid's surface, by |f| / |grad f|: vertices, how many are off by more than the tolerance, and the farthest distance, in scene units.
+        """
+    def check_uv(self, mesh: Mesh, size: typing.SupportsInt | typing.SupportsIndex = 2048, gutter: typing.SupportsInt | typing.SupportsIndex = 8, progress: typing.Any = None) -> dict:
+        """
+        What a bake would find of the mesh's UV map: texels on the mesh; overlapping, those on more than one triangle; faces, and how many reach outside [0, 1]; texels_per_unit, the root of texels per square scene unit.
         """
     def first_point(self, origin: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"], direction: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"], plane: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(4)"] = [0.0, 0.0, 0.0, 0.0]) -> typing.Annotated[list[float], "FixedSize(3)"] | None:
         """
@@ -151,9 +163,17 @@ class Scene:
         """
         Volume fractions at points (N, 3): (N, materials), rows sum to 1. outside='nan' marks points outside the solid.
         """
+    def image_components(self, channels: collections.abc.Sequence[str]) -> dict:
+        """
+        {image: its number of components} of what bake() makes of the channels.
+        """
     def mesh(self, resolution: typing.SupportsInt | typing.SupportsIndex = 128, cell_size: typing.SupportsFloat | typing.SupportsIndex = 0.0, sections: bool = True, size: typing.SupportsInt | typing.SupportsIndex = 2048, gutter: typing.SupportsInt | typing.SupportsIndex = 8, progress: typing.Any = None) -> Mesh:
         """
         The surface with texture coordinates for a texture of `size`². resolution: cells along the longest side; cell_size (scene units) instead when > 0. progress(share) may return False to cancel, which raises Cancelled.
+        """
+    def osl(self, channels: collections.abc.Sequence[str] = ['base_color'], name: str = 'sardf_part') -> tuple:
+        """
+        (text, {output: what it is}) of an OSL shader that computes the channels exactly where a ray hits; fractions are an output for each material. The object's space has to be the scene's frame. Raises Error for a field without a formula.
         """
     def povray(self, path: str, render: str = '', camera: typing.Any = None, look: str = 'shaded', width: typing.SupportsInt | typing.SupportsIndex = 640, height: typing.SupportsInt | typing.SupportsIndex = 480, samples: typing.SupportsInt | typing.SupportsIndex = 256, all_fields: bool = False, progress: typing.Any = None) -> None:
         """
@@ -396,6 +416,10 @@ def circle(center: typing.Sequence[float] = ..., radius: float = ..., axis: str 
     radius: its radius (scene units); positive
     axis: direction perpendicular to its plane
     """
+def compare_pictures(reference: typing.Annotated[numpy.typing.ArrayLike, numpy.float32], candidate: typing.Annotated[numpy.typing.ArrayLike, numpy.float32], factor: typing.SupportsFloat | typing.SupportsIndex = 16.0) -> dict:
+    """
+    How far two pictures of one scene agree: float32 (height, width, 4), linear, row 0 at the top; a solid is where alpha is at least 0.5. A dictionary: intersection_over_union and edge_within_half_pixel_share of the masks; median, quantile_99 and maximum of the largest difference of the three channels, in steps of 1/255, over compared_pixels, those away from edges; left_out_share of the others; non_finite_pixels; and difference, (height, width, 3), the absolute difference × factor in [0, 1]. Raises Error for other shapes and for pictures without any solid.
+    """
 def complement(field: Field | float | str) -> Field:
     """
     complement(field)
@@ -580,6 +604,10 @@ def intersection(*of: Field, blend: Blend = ...) -> Field:
     of: the solids
     blend: how they are joined
     """
+def is_color(channel: str) -> bool:
+    """
+    Whether a channel holds linear colours; all others are data.
+    """
 def load(path: str, progress: typing.Any = None) -> Scene:
     """
     Reads a scene file, and solves for its fitted fields. Raises Error with all that is wrong in it. progress(share) may return False to cancel, which raises Cancelled.
@@ -689,6 +717,10 @@ def polyline(vertices: typing.Sequence[typing.Sequence[float]] | numpy.ndarray, 
     
     vertices: its corners in order (scene units)
     closed: whether the last corner is joined to the first
+    """
+def povray_stage(stage: str, path: str, render: str = '', look: str = 'lit', width: typing.SupportsInt | typing.SupportsIndex = 640, height: typing.SupportsInt | typing.SupportsIndex = 480, samples: typing.SupportsInt | typing.SupportsIndex = 256, light_samples: typing.SupportsInt | typing.SupportsIndex = 4, program: str = '', progress: typing.Any = None) -> list[str]:
+    """
+    Writes parts in their places under Blender's lights for POV-Ray 3.7: path (.pov), of each part an .inc beside it, and density files; renders them to `render` (.exr, linear, with alpha) unless it is empty. stage: JSON text with camera, world (radiance), lights and parts, as core/sardf/stage.hpp states. look: lit (matte surfaces, no interreflection), flat (the colours alone) or normals; samples: as Scene.povray takes it; light_samples: along each side of an area light and of soft shadows, 1 to 16; program: path of POV-Ray. Returns sentences of what has no formula. Raises Error, also where POV-Ray is missing; progress(share) may return False to cancel, which stops POV-Ray and raises Cancelled.
     """
 def quadric(matrix: typing.Sequence[typing.Sequence[float]] | numpy.ndarray, vector: typing.Sequence[float] = ..., constant: float = ...) -> Field:
     """
@@ -822,6 +854,10 @@ def taylor(formula: str, distance: Field | float | str, terms: float, first_term
     distance: the distance u
     terms: how many terms, at most 32; a whole number from 1
     first_term: the first of them; term k is that of u^(k-1); a whole number from 1
+    """
+def texels_per_unit(mesh: Mesh, size: typing.SupportsInt | typing.SupportsIndex) -> float:
+    """
+    The root of texels per square scene unit over the whole mesh, for a texture of size².
     """
 def torus(center: typing.Sequence[float] = ..., axis: str | typing.Sequence[float] = ..., major_radius: float = ..., minor_radius: float = ...) -> Field:
     """

@@ -24,10 +24,12 @@ def set_colorspace(image, is_color):
 
 
 def load(path, name, is_color, packed):
-    """A new image of an EXR file. `packed`: the .blend keeps the file's bytes, and unpacking writes
-    textures/NAME.exr; else it names the file, relative to a saved .blend."""
+    """A new image of an EXR file, called as the file is where `name` is "". `packed`: the .blend
+    keeps the file's bytes, and unpacking writes textures/NAME.exr; else it names the file, relative
+    to a saved .blend."""
     image = bpy.data.images.load(str(path), check_existing=False)
-    image.name = name
+    if name:
+        image.name = name
     try:
         set_colorspace(image, is_color)
     except ColorSpaceError:

@@ -30,7 +30,7 @@ def from_exr(content, kind):
     """A packed image of an EXR file's bytes: linear colour, and alpha 0 where nothing is."""
     with exr_file(NAMES[kind]) as path:
         path.write_bytes(content)
-        return images.load(path, NAMES[kind], is_color=True, packed=True)
+        return images.load(path, "", is_color=True, packed=True)
 
 
 def keep(kind, image, look):
@@ -69,7 +69,7 @@ def difference(sardf, values, look):
     """The image of an array (height, width, 3)."""
     with exr_file(NAMES["difference"]) as path:
         sardf.write_exr(path, values)
-        image = images.load(path, NAMES["difference"], is_color=True, packed=True)
+        image = images.load(path, "", is_color=True, packed=True)
     return keep("difference", image, look)
 
 

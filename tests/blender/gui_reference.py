@@ -27,7 +27,7 @@ def watch_panel():
 
     original = reference_panel._Panel.draw
     reference_panel._Panel.bl_category = "Tool"
-    reference_panel._Panel.bl_options = set()
+    reference_panel.SARDF_PT_reference.bl_options = set()
 
     def draw(self, context):
         try:

@@ -119,7 +119,7 @@ def escape(folder):
     """In the middle of the mesh, of the textures and of the files."""
     before = contents()
     result["interrupted"], result["seconds to cancel"] = [], []
-    for share, resolution, size in ((0.02, 256, "4096"), (0.5, 48, "2048"), (0.85, 48, "4096")):
+    for share, resolution, size in ((0.02, 256, "4096"), (0.3, 48, "4096"), (0.85, 48, "4096")):
         settings().resolution, settings().size = resolution, size
         if share > 0.6:
             settings().channels = "base_color, fractions"
@@ -165,11 +165,11 @@ def watch_end(job, stopped):
 def deleted_part(folder):
     with bpy.context.temp_override(**place):
         bpy.ops.sardf.part_import(filepath=SCENE)
-        part = bpy.context.view_layer.objects.active
-        settings().resolution = 200
-        job = start()
-        yield from until(lambda: job.share > 0, "the bake to begin", LIMIT)
-        bpy.data.objects.remove(part)
+    name = item_name()
+    settings().resolution = 200
+    job = start()
+    yield from until(lambda: job.share > 0, "the bake to begin", LIMIT)
+    bpy.data.objects.remove(bpy.data.objects[name])
     yield from ended(job)
     result["deleted part"] = [said[-1], [str(p) for p in folder.rglob("*")]]
 
@@ -199,10 +199,11 @@ def finished(target):
     result["baked"] = [item.name, len(item.data.polygons)]
     with bpy.context.temp_override(**place):
         bpy.ops.ed.undo()
-        yield from redrawn()
-        result["undone"] = contents()["objects"] == before["objects"]
+    yield from redrawn()
+    result["undone"] = contents()["objects"] == before["objects"]
+    with bpy.context.temp_override(**place):
         bpy.ops.ed.redo()
-        yield from redrawn()
+    yield from redrawn()
     result["redone"] = item_name() == result["baked"][0]
 
 

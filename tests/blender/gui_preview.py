@@ -275,7 +275,8 @@ def interrupted(preview):
     with bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"]):
         bpy.ops.ed.undo_push(message="before")
         bpy.ops.ed.undo_push(message="after")
-        yield from busy(preview)
+    yield from busy(preview)
+    with bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"]):
         bpy.ops.ed.undo()
     yield from settled()
     result["threads at work"] = threads()

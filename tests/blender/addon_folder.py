@@ -5,13 +5,15 @@ import importlib.util
 import sys
 from pathlib import Path
 
+NAME = "sardf_blender"
+
 
 def load(folder, before=lambda: None):
     """Import and register it as sardf_blender; `before` is called between the two."""
     spec = importlib.util.spec_from_file_location(
-        "sardf_blender", Path(folder) / "__init__.py", submodule_search_locations=[folder]
+        NAME, Path(folder) / "__init__.py", submodule_search_locations=[folder]
     )
-    sys.modules["sardf_blender"] = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(sys.modules["sardf_blender"])
+    sys.modules[NAME] = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(sys.modules[NAME])
     before()
-    sys.modules["sardf_blender"].register()
+    sys.modules[NAME].register()

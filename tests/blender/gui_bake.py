@@ -11,11 +11,21 @@ import time
 from pathlib import Path
 
 import bpy
-from bpy_extras.view3d_utils import location_3d_to_region_2d
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import gui_window
-from gui_window import TimeOut, addon, click, drive, open_tab, result, screenshot, view
+from gui_window import (
+    TimeOut,
+    addon,
+    click,
+    drive,
+    open_tab,
+    override,
+    pixel,
+    result,
+    screenshot,
+    view,
+)
 from installing import MODULE
 
 SCENE = sys.argv[-3]
@@ -46,7 +56,7 @@ def count_panel_draws():
 
 
 def bake_class():
-    return addon("operators").SARDF_OT_bake
+    return addon("bake_operator").SARDF_OT_bake
 
 
 def redrawn():
@@ -100,8 +110,7 @@ def scenario():
     screenshot("panel")
     yield from cancelled_bake()
     settings.resolution, settings.size = 48, "512"
-    window, area, regions = view()
-    with bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"]):
+    with override():
         bpy.ops.ed.undo_push(message="before the bake")
     yield from finished_bake()
     yield from undone_bake()
@@ -128,14 +137,13 @@ def cancelled_bake():
 def finished_bake():
     yield from press_bake()
     yield from until(lambda: bake_class().job is None, "the bake to end")
-    window, area, regions = view()
     item = bpy.context.view_layer.objects.active
     result["baked"] = contents()
     result["faces"] = len(item.data.polygons)
     result["unit"] = bpy.context.scene.unit_settings.length_unit
-    shading = area.spaces.active.shading
+    shading = view()[1].spaces.active.shading
     shading.type, shading.light, shading.color_type = "SOLID", "FLAT", "TEXTURE"
-    with bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"]):
+    with override():
         bpy.ops.view3d.view_axis(type="FRONT")
         bpy.ops.view3d.view_selected(use_all_regions=False)
     yield from redrawn()
@@ -146,16 +154,12 @@ def finished_bake():
 
 def seen(point):
     """[point, its pixel on the screenshot (column, row)], in the scene's units."""
-    window, area, regions = view()
-    region = regions["WINDOW"]
-    x, y = location_3d_to_region_2d(region, area.spaces.active.region_3d, point)
-    return [list(point), [region.x + x, window.height - (region.y + y)]]
+    return [list(point), pixel(point)]
 
 
 def undone_bake():
     """One undo step takes back all of the bake, and nothing else."""
-    window, area, regions = view()
-    with bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"]):
+    with override():
         bpy.ops.ed.undo()
     yield
     result["objects after undo"] = sorted(item.name for item in bpy.context.scene.objects)

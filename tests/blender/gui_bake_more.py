@@ -5,7 +5,6 @@ gui_window.py. Writes bake_panel.png, bake_progress.png and bake_nodes.png into 
 put into the tab that is shown first, since Blender 3.4 has no way but a click to choose another.
 """
 
-import importlib
 import subprocess
 import sys
 import tempfile
@@ -18,26 +17,21 @@ import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import addon_folder
-from gui_window import drive, result, screenshot, until, view
+from gui_window import addon, drive, override, result, screenshot, until, view, wait
 
 ADDON, SCENE = sys.argv[-4:-2]
 LIMIT = 300.0  # seconds for anything at most
 CHANNELS = "base_color, roughness, metallic, fractions, normal, density"
-place = {}
 said = []
 
 
-def module(name):
-    return importlib.import_module(f"sardf_blender.{name}")
-
-
 def bake_class():
-    return module("bake_operator").SARDF_OT_bake
+    return addon("bake_operator").SARDF_OT_bake
 
 
 def watch():
     """Put the panel into the first tab, keep its first error, and what the operator reports."""
-    panel = module("bake_panel").SARDF_PT_bake
+    panel = addon("bake_panel").SARDF_PT_bake
     panel.bl_category = "Tool"
     original = panel.draw
 
@@ -66,12 +60,12 @@ def contents():
 
 def redrawn():
     before = result.get("drawn", 0)
-    place["area"].tag_redraw()
+    view()[1].tag_redraw()
     yield from until(lambda: result.get("drawn", 0) > before, "the panel to be drawn", LIMIT)
 
 
 def start():
-    with bpy.context.temp_override(**place):
+    with override():
         bpy.ops.sardf.bake("INVOKE_DEFAULT")
     return bake_class().job
 
@@ -82,9 +76,8 @@ def ended(job):
 
 
 def scenario():
-    window, area, regions = view()
+    area = view()[1]
     area.spaces.active.show_region_ui = True
-    place.update(window=window, area=area, region=regions["WINDOW"])
     bpy.data.meshes.remove(bpy.data.meshes["Cube"])
     settings().filepath = SCENE
     settings().channels = CHANNELS
@@ -97,7 +90,7 @@ def scenario():
         yield from disabled_addon(Path(folder))
         yield from finished(target)
         yield from unwrapped()
-        yield from nodes(window, area)
+        yield from nodes()
 
 
 def settings():
@@ -108,7 +101,7 @@ def settings():
 def panel_before_a_bake():
     settings().resolution, settings().size = 256, "4096"
     yield from redrawn()
-    info = module("bake_info")
+    info = addon("bake_info")
     yield from until(lambda: info.cost(bpy.context) is not None, "the estimate", LIMIT)
     yield from redrawn()
     result["estimate"] = info.cost(bpy.context).seconds
@@ -119,7 +112,7 @@ def escape(folder):
     """In the middle of the mesh, of the textures and of the files."""
     before = contents()
     result["interrupted"], result["seconds to cancel"] = [], []
-    for share, resolution, size in ((0.02, 256, "4096"), (0.3, 48, "4096"), (0.85, 48, "4096")):
+    for share, resolution, size in ((0.02, 256, "4096"), (0.58, 48, "4096"), (0.85, 48, "4096")):
         settings().resolution, settings().size = resolution, size
         if share > 0.6:
             settings().channels = "base_color, fractions"
@@ -163,7 +156,7 @@ def watch_end(job, stopped):
 
 
 def deleted_part(folder):
-    with bpy.context.temp_override(**place):
+    with override():
         bpy.ops.sardf.part_import(filepath=SCENE)
     name = item_name()
     settings().resolution = 200
@@ -179,8 +172,7 @@ def disabled_addon(folder):
     yield from until(lambda: job.share > 0, "the bake to begin", LIMIT)
     sys.modules["sardf_blender"].unregister()
     yield from until(lambda: not job.running, "the thread to end", LIMIT)
-    end = time.monotonic() + 0.5
-    yield from until(lambda: time.monotonic() > end, "half a second", LIMIT)
+    yield from wait(0.5)
     result["disabled"] = [job.cancelled, [str(p) for p in folder.rglob("*")]]
     sys.modules["sardf_blender"].register()
     yield from redrawn()
@@ -188,7 +180,7 @@ def disabled_addon(folder):
 
 def finished(target):
     settings().resolution, settings().size = 24, "512"
-    with bpy.context.temp_override(**place):
+    with override():
         bpy.context.view_layer.objects.active = None
         bpy.ops.ed.undo_push(message="before the bake")
     before = contents()
@@ -197,11 +189,11 @@ def finished(target):
     result["files"] = sorted(path.name for path in target.iterdir())
     item = bpy.context.view_layer.objects.active
     result["baked"] = [item.name, len(item.data.polygons)]
-    with bpy.context.temp_override(**place):
+    with override():
         bpy.ops.ed.undo()
     yield from redrawn()
     result["undone"] = contents()["objects"] == before["objects"]
-    with bpy.context.temp_override(**place):
+    with override():
         bpy.ops.ed.redo()
     yield from redrawn()
     result["redone"] = item_name() == result["baked"][0]
@@ -210,7 +202,7 @@ def finished(target):
 def unwrapped():
     """Smart UV Project waits for Object Mode, and leaves the selection as it was till the end."""
     settings().uv_source, settings().destination = "SMART", "PACKED"
-    with bpy.context.temp_override(**place):
+    with override():
         bpy.ops.mesh.primitive_cube_add()
         cube = bpy.context.view_layer.objects.active
         bpy.ops.object.mode_set(mode="EDIT")
@@ -221,7 +213,7 @@ def unwrapped():
         raise job.error
     yield from until(lambda: "Object Mode" in bake_class().stage, "the wish for Object Mode", LIMIT)
     result["mode"] = cube.mode
-    with bpy.context.temp_override(**place):
+    with override():
         bpy.ops.object.mode_set(mode="OBJECT")
     yield from ended(job)
     item = bpy.context.view_layer.objects.active
@@ -233,8 +225,9 @@ def item_name():
     return bpy.context.view_layer.objects.active.name
 
 
-def nodes(window, area):
+def nodes():
     """The material in a node editor: what is drawn has sizes."""
+    window, area, _ = view()
     item = bpy.context.view_layer.objects.active
     area.type = "NODE_EDITOR"
     area.ui_type = "ShaderNodeTree"

@@ -5,9 +5,7 @@ gui_window.py. Writes parts.png into FOLDER. The panels are put into the tab tha
 since Blender 3.4 has no way but a click to choose another.
 """
 
-import importlib
 import sys
-import time
 import traceback
 from pathlib import Path
 
@@ -15,7 +13,7 @@ import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import addon_folder
-from gui_window import drive, result, screenshot, until, view
+from gui_window import addon, drive, override, result, screenshot, until, view, wait
 
 ADDON, SCENE = sys.argv[-4:-2]
 LIMIT = 120.0  # seconds for anything at most
@@ -23,8 +21,8 @@ result["drawn"] = {}
 
 
 def watch_panels():
-    panel = importlib.import_module("sardf_blender.parts.part_panel")
-    sections = importlib.import_module("sardf_blender.parts.part_section_panel")
+    panel = addon("parts.part_panel")
+    sections = addon("parts.part_section_panel")
     panel._Panel.bl_category = sections.SARDF_PT_section_object.bl_category = "Item"
     sections.SARDF_PT_sections.bl_options = set()  # open
     for cls in (*panel.CLASSES, *sections.CLASSES):
@@ -63,16 +61,13 @@ def drawn(*names):
 
 
 def until_drawn(*names):
-    return until(
-        lambda: all(result["drawn"].get(name, 0) for name in names), f"a draw of {names}", LIMIT
-    )
+    return until(lambda: drawn(*names), f"a draw of {names}", LIMIT)
 
 
 def scenario():
-    window, area, regions = view()
+    area = view()[1]
     area.spaces.active.show_region_ui = True
-    place = {"window": window, "area": area, "region": regions["WINDOW"]}
-    with bpy.context.temp_override(**place):
+    with override():
         bpy.ops.object.select_all(action="SELECT")
         bpy.ops.object.delete()
         bpy.ops.sardf.part_import(filepath=SCENE)
@@ -86,11 +81,10 @@ def scenario():
     yield from until_drawn("SARDF_PT_part", "SARDF_PT_materials", "SARDF_PT_features",
                            "SARDF_UL_entries", "SARDF_UL_materials", "SARDF_UL_named",
                            "SARDF_PT_sections", "SARDF_PT_section_object")  # fmt: skip
-    end = time.monotonic() + 1
-    yield from until(lambda: time.monotonic() > end, "a second", LIMIT)
+    yield from wait(1)
     screenshot("part_sections")
     for kind in ("box", "cylinder", "formula"):  # the parameters of each in the panel
-        with bpy.context.temp_override(**place):
+        with override():
             bpy.context.view_layer.objects.active = part
             bpy.ops.sardf.primitive_add(kind=kind)
         before = result["drawn"]["SARDF_PT_part"]
@@ -98,11 +92,10 @@ def scenario():
         yield from until(
             lambda before=before: result["drawn"]["SARDF_PT_part"] > before, "the panel", LIMIT
         )
-    with bpy.context.temp_override(**place):
+    with override():
         bpy.ops.wm.call_menu(name="SARDF_MT_add")
     yield from until_drawn("SARDF_MT_add")
-    end = time.monotonic() + 1
-    yield from until(lambda: time.monotonic() > end, "a second", LIMIT)
+    yield from wait(1)
     screenshot("parts")
 
 

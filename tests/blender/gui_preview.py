@@ -13,12 +13,11 @@ import time
 from pathlib import Path
 
 import bpy
-from bpy_extras.view3d_utils import location_3d_to_region_2d
 from mathutils import Matrix, Vector
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import gui_window
-from gui_window import addon, drive, result, screenshot, view
+from gui_window import addon, drive, override, pixel, result, screenshot, view
 from installing import MODULE
 
 SCENE = sys.argv[-3]
@@ -30,14 +29,6 @@ drawn = {}  # key of a part -> (wish, samples along its longest side) that was d
 
 def until(condition, what, limit=LIMIT):
     return gui_window.until(condition, what, limit)
-
-
-def pixel(point):
-    """[column, row] of a point of the world on a screenshot."""
-    window, area, regions = view()
-    region = regions["WINDOW"]
-    x, y = location_3d_to_region_2d(region, area.spaces.active.region_3d, Vector(point))
-    return [region.x + x, window.height - (region.y + y)]
 
 
 def note_draws(preview):
@@ -86,7 +77,7 @@ def scenario():
     yield from shown()
     yield from cut()
     yield from moved(preview)
-    yield from hidden(preview)
+    yield from hidden()
     yield from probed()
     yield from replaced(preview)
     yield from dragged(preview)
@@ -94,10 +85,9 @@ def scenario():
 
 
 def look_from_the_front(distance):
-    window, area, regions = view()
-    with bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"]):
+    with override():
         bpy.ops.view3d.view_axis(type="FRONT")
-    space = area.spaces.active
+    space = view()[1].spaces.active
     space.region_3d.view_location = (0, 0, 0)
     space.region_3d.view_distance = distance
     space.overlay.show_floor = space.overlay.show_axis_x = space.overlay.show_cursor = False
@@ -125,8 +115,7 @@ def shown():
 def cut():
     """The half towards the viewer is taken away, then less of it."""
     settings = bpy.context.scene.sardf_preview
-    window, area, regions = view()
-    with bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"]):
+    with override():
         bpy.ops.sardf.section_add(kind="plane")  # there is no part: it cuts all that is shown
     plane = bpy.context.active_object
     plane.hide_set(True)  # its lines are not in the way
@@ -169,7 +158,7 @@ def moved(preview):
     yield from settled()
 
 
-def hidden(preview):
+def hidden():
     """By a cube in front, which one behind does not do."""
     cube = bpy.data.objects["Cube"]
     for name, y in (("preview_behind_cube", -8), ("preview_before_cube", 8)):
@@ -183,8 +172,7 @@ def hidden(preview):
 def probed():
     probe = addon("preview.preview_probe").SARDF_OT_probe
 
-    window, area, regions = view()
-    with bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"]):
+    with override():
         bpy.ops.sardf.probe("INVOKE_DEFAULT")
     yield from until(lambda: probe.running is not None, "the probe")
     operator = probe.running
@@ -271,12 +259,11 @@ def busy(preview):
 
 def interrupted(preview):
     """Undo, another file and disabling the add-on while the worker runs."""
-    window, area, regions = view()
-    with bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"]):
+    with override():
         bpy.ops.ed.undo_push(message="before")
         bpy.ops.ed.undo_push(message="after")
     yield from busy(preview)
-    with bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"]):
+    with override():
         bpy.ops.ed.undo()
     yield from settled()
     result["threads at work"] = threads()

@@ -15,7 +15,7 @@ import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import addon_folder
-from gui_window import drive, result, screenshot, until, view
+from gui_window import addon, drive, override, result, screenshot, until, view, wait
 
 ADDON = sys.argv[-3]
 LIMIT = 120.0  # seconds for anything at most
@@ -23,8 +23,7 @@ result["drawn"] = 0
 
 
 def watch_panel():
-    from sardf_blender.reference import reference_panel
-
+    reference_panel = addon("reference.reference_panel")
     original = reference_panel._Panel.draw
     reference_panel._Panel.bl_category = "Tool"
     reference_panel.SARDF_PT_reference.bl_options = set()
@@ -41,9 +40,7 @@ def watch_panel():
 
 
 def running():
-    from sardf_blender.reference import reference_operators
-
-    return reference_operators.SARDF_OT_reference.work
+    return addon("reference.reference_operators").SARDF_OT_reference.work
 
 
 def povray_runs():
@@ -59,9 +56,7 @@ def press_escape():
 
 
 def begin():
-    window, area, regions = view()
-    place = {"window": window, "area": area, "region": regions["WINDOW"]}
-    with bpy.context.temp_override(**place):
+    with override():
         return bpy.ops.sardf.reference("INVOKE_DEFAULT")
 
 
@@ -121,8 +116,7 @@ def finished(scene, editor):
     before = result["drawn"]
     view()[1].tag_redraw()
     yield from until(lambda: result["drawn"] > before, "the panel", LIMIT)
-    end = time.monotonic() + 1
-    yield from until(lambda: time.monotonic() > end, "a second", LIMIT)
+    yield from wait(1)
     screenshot("reference")
 
 

@@ -15,7 +15,7 @@ from mathutils import Euler, Vector
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import addon_folder
 import gui_window
-from gui_window import drive, result, screenshot, view
+from gui_window import addon, drive, override, pixel, result, screenshot, view, wait
 
 ADDON, SCENE = sys.argv[-4:-2]
 LIMIT = 90.0  # seconds for anything at most
@@ -27,22 +27,8 @@ def until(condition, what):
     return gui_window.until(condition, what, LIMIT)
 
 
-def pixel(point):
-    """[column, row] of a point of the world on a screenshot."""
-    window, area, regions = view()
-    region = regions["WINDOW"]
-    x, y = location_3d_to_region_2d(region, area.spaces.active.region_3d, Vector(point))
-    return [region.x + x, window.height - (region.y + y)]
-
-
-def override():
-    window, area, regions = view()
-    return bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"])
-
-
 def note_draws():
-    from sardf_blender.preview import preview
-
+    preview = addon("preview.preview")
     original = preview.Preview.draw
 
     def draw(self, context):
@@ -54,8 +40,7 @@ def note_draws():
 
 def settled():
     """Wait until what there is now is sampled finely and drawn."""
-    from sardf_blender.preview import preview
-
+    preview = addon("preview.preview")
     yield
     preview.collect()
     yield from until(lambda: not preview.CURRENT.busy, "the fine samples")
@@ -81,9 +66,7 @@ def look(direction):
 
 
 def part():
-    from sardf_blender.parts import part_objects
-
-    return part_objects.parts(bpy.context.scene)[0]
+    return addon("parts.part_objects").parts(bpy.context.scene)[0]
 
 
 def add_section(kind):
@@ -114,8 +97,7 @@ def scenario():
 
 
 def plane_moves():
-    from sardf_blender.preview import preview
-
+    preview = addon("preview.preview")
     look((1.5707963, 0, 0))
     plane = add_section("plane")
     yield from settled()
@@ -141,8 +123,7 @@ def plane_moves():
 
 def probed(point):
     """What the probe says of the pixel that a point is seen at."""
-    from sardf_blender.preview import preview_probe
-
+    preview_probe = addon("preview.preview_probe")
     _, area, regions = view()
     region, view_3d = regions["WINDOW"], area.spaces.active.region_3d
     return preview_probe.read(region, view_3d, location_3d_to_region_2d(region, view_3d, point))
@@ -207,8 +188,6 @@ def wires():
 
 def apart():
     """Two pieces, baked while the window lives, and moved apart."""
-    from sardf_blender import operators
-
     look((1.1, 0, 0.5))
     plane = add_section("plane")
     plane.sardf_section.spread = 4
@@ -217,15 +196,14 @@ def apart():
     with override():
         bpy.context.view_layer.objects.active = part()
         bpy.ops.sardf.bake_pieces("INVOKE_DEFAULT")
-    result["running"] = operators.SARDF_OT_bake.job is not None
+    result["running"] = addon("bake_operator").SARDF_OT_bake.job is not None
     yield from until(lambda: part().sardf_part.baked is not None, "the pieces")
     yield
     items = [item for item in part().children if "sardf_source" in item]
     result["pieces"] = {item.name: list(item.matrix_world.translation) for item in items}
     result["previewed"] = part().name in shown()
     view()[1].spaces.active.shading.color_type = "TEXTURE"
-    end = time.monotonic() + 1
-    yield from until(lambda: time.monotonic() > end, "a second")
+    yield from wait(1)
     screenshot("section_pieces")
     plane.location.y = 1
     yield from until(lambda: part().name in shown(), "the preview of the changed part")
@@ -233,8 +211,7 @@ def apart():
 
 
 def shown():
-    from sardf_blender.preview import preview
-
+    preview = addon("preview.preview")
     preview.collect()
     return preview.CURRENT.parts
 

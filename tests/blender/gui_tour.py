@@ -6,22 +6,16 @@ gui_window.py.
 """
 
 import sys
-import time
 from pathlib import Path
 
 import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from gui_window import addon, drive, open_tab, result, screenshot, until, view
+from gui_window import addon, drive, open_tab, override, result, screenshot, until, view, wait
 from installing import MODULE
 
 LIMIT = 120.0  # seconds to wait for anything at most; llvmpipe on a busy machine is slow
 drawn = {"panel": 0, "reference": 0}
-
-
-def place():
-    window, area, regions = view()
-    return bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"])
 
 
 def count_draws():
@@ -42,9 +36,8 @@ def count_draws():
 
 def redrawn(seconds=0.6):
     """Wait until the window was drawn again, with everything that is in it now."""
-    end = time.monotonic() + seconds
     view()[1].tag_redraw()
-    yield from until(lambda: time.monotonic() > end, "some time", LIMIT)
+    yield from wait(seconds)
     for _ in range(3):
         yield
 
@@ -71,7 +64,7 @@ def scenario():
 
 def first_part():
     """A block with a bore, whose edges are arcs, lined."""
-    with place():
+    with override():
         bpy.ops.sardf.primitive_add(kind="rounded_box")
         bpy.context.active_object.scale = (2.0, 1.4, 0.8)
         bpy.ops.sardf.primitive_add(kind="cylinder", operation="difference")
@@ -101,17 +94,16 @@ def preview_of_it():
 
 
 def cut_open():
-    with place():
+    with override():
         bpy.ops.sardf.section_add(kind="plane")
         plane = bpy.context.active_object
         plane.rotation_euler = (1.5708, 0, 0)  # its z axis points to the viewer: -y
     yield from settled()
-    result["section"] = plane.name
     screenshot("tour_3_section")
 
 
 def baked():
-    with place():
+    with override():
         bpy.ops.sardf.bake("EXEC_DEFAULT")
     item = next(o for o in bpy.context.scene.objects if o.type == "MESH" and o.data.materials)
     result["faces"] = len(item.data.polygons)
@@ -126,7 +118,7 @@ def compared():
     scene = bpy.context.scene
     scene.sardf_preview.enabled = False
     scene.render.resolution_x, scene.render.resolution_y = 480, 360
-    with place():
+    with override():
         bpy.ops.sardf.reference("EXEC_DEFAULT")
         bpy.ops.screen.area_split(direction="VERTICAL", factor=0.5)
     yield from redrawn()

@@ -15,8 +15,11 @@ import traceback
 from pathlib import Path
 
 import bpy
+from bpy_extras.view3d_utils import location_3d_to_region_2d
+from mathutils import Vector
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+import addon_folder
 from installing import MODULE
 
 FOLDER, RESULT = sys.argv[-2:]
@@ -28,8 +31,9 @@ class TimeOut(Exception):
 
 
 def addon(name):
-    """A module of the installed add-on."""
-    return importlib.import_module(f"{MODULE}.{name}")
+    """A module of the add-on: of the checkout, if addon_folder loaded it, or else installed."""
+    package = addon_folder.NAME if addon_folder.NAME in sys.modules else MODULE
+    return importlib.import_module(f"{package}.{name}")
 
 
 def until(condition, what, limit):
@@ -48,6 +52,28 @@ def view():
         (a for a in window.screen.areas if a.type == "VIEW_3D"), key=lambda a: a.width * a.height
     )
     return window, area, {region.type: region for region in area.regions}
+
+
+def wait(seconds):
+    """Give Blender so much time."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        yield
+
+
+def override():
+    """The context of the largest viewport. Nothing may wait inside of it: Blender goes on, in a
+    context that is not its own, and may die of it."""
+    window, area, regions = view()
+    return bpy.context.temp_override(window=window, area=area, region=regions["WINDOW"])
+
+
+def pixel(point):
+    """[column, row] of a point of the world on a screenshot."""
+    window, area, regions = view()
+    region = regions["WINDOW"]
+    x, y = location_3d_to_region_2d(region, area.spaces.active.region_3d, Vector(point))
+    return [region.x + x, window.height - (region.y + y)]
 
 
 def screenshot(name):

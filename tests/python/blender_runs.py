@@ -8,6 +8,7 @@ import zipfile
 from pathlib import Path
 
 import numpy as np
+from PIL import Image
 from repository import ROOT
 
 BPY_PYTHON = ROOT / ".venv-bpy/bin/python"
@@ -50,6 +51,17 @@ def linear(color):
     """A "#rrggbb" colour in linear Rec. 709, by the definition of sRGB (IEC 61966-2-1)."""
     encoded = np.array([int(color[i : i + 2], 16) / 255 for i in (1, 3, 5)])
     return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+
+
+def encoded(color):
+    """0 to 255 on the screen, of linear colours; the same definition."""
+    low = color <= 0.0031308
+    return 255 * np.where(low, 12.92 * color, 1.055 * np.maximum(color, 0) ** (1 / 2.4) - 0.055)
+
+
+def screenshot(name):
+    """A screenshot as (rows, columns, 3), 0 to 255."""
+    return np.asarray(Image.open(SCREENSHOTS / f"{name}.png").convert("RGB"), float)
 
 
 def expected_fractions(points):
@@ -161,8 +173,8 @@ def install_for_window(zips, user_folder):
 
 
 def run_in_window(script, *arguments, user_folder, size, limit):
-    """What tests/blender/gui_window.py's `result` became in a window of `size` (width, height), and
-    the finished process. Screenshots are in SCREENSHOTS."""
+    """What tests/blender/gui_window.py's `result` became in a window of `size` (width, height).
+    Screenshots are in SCREENSHOTS."""
     SCREENSHOTS.mkdir(parents=True, exist_ok=True)
     user_folder.mkdir(parents=True, exist_ok=True)
     result_file = user_folder / f"{script.stem.removeprefix('gui_')}.json"
@@ -178,7 +190,8 @@ def run_in_window(script, *arguments, user_folder, size, limit):
     assert result_file.is_file(), done.stdout + done.stderr
     result = json.loads(result_file.read_text())
     assert not result["errors"], result["errors"][0]
-    return result, done
+    assert "Traceback" not in done.stdout + done.stderr, done.stdout + done.stderr
+    return result
 
 
 def run_check(version, folder, check, *arguments):

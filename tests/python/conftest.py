@@ -15,7 +15,7 @@ def zips(tmp_path_factory):
 
 
 def pytest_collection_modifyitems(items):
-    """`-m window` chooses the tests that need a window of Blender."""
+    """`-m window` chooses the tests that look at a window which a fixture of that name drives."""
     for item in items:
         if "window" in getattr(item, "fixturenames", ()):
             item.add_marker(pytest.mark.window)

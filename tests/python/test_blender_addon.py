@@ -1,7 +1,6 @@
 """The add-on's zips installed in Blender 3.4.1 and bpy 5.0.1."""
 
 import json
-import subprocess
 import sys
 import threading
 import time
@@ -11,13 +10,14 @@ import numpy as np
 import pytest
 from blender_runs import (
     GRADED_SPHERE,
-    SCREENSHOTS,
     SCRIPTS,
     VERSIONS,
+    encoded,
     expected_colors,
     install_for_window,
     run_in_window,
     run_script,
+    screenshot,
     write_scene,
 )
 from repository import ROOT
@@ -64,7 +64,7 @@ def window(zips, tmp_path_factory):
     install_for_window(zips, user)
     scene = write_scene(folder, GRADED_SPHERE)
     script = SCRIPTS / "gui_bake.py"
-    return run_in_window(script, scene, user_folder=user, size=(1280, 1200), limit=400)[0]
+    return run_in_window(script, scene, user_folder=user, size=(1280, 1200), limit=400)
 
 
 def test_a_click_on_bake_makes_the_part_in_one_undo_step(window):
@@ -86,18 +86,14 @@ def test_escape_cancels_and_leaves_nothing_behind(window):
 
 def test_screenshot_shows_panel_and_baked_colours(window):
     """The viewport shows the texture's colour at each vertex, and the sidebar has text."""
-    raw = subprocess.run(
-        ["convert", str(SCREENSHOTS / "baked.png"), "-depth", "8", "rgb:-"],
-        capture_output=True, check=True,
-    ).stdout  # fmt: skip
-    picture = np.frombuffer(raw, np.uint8).reshape(1200, 1280, 3).astype(float)
+    picture = screenshot("baked")
     points = np.array([point for point, _ in window["seen"]])
     column, row = np.array([pixel for _, pixel in window["seen"]]).astype(int).T
     clear = (column > 60) & (column < 700)  # of toolbar, gizmos and sidebar
     assert clear.sum() > 500
-    light = expected_colors(points)[clear]
-    encoded = np.where(light <= 0.0031308, light * 12.92, 1.055 * light ** (1 / 2.4) - 0.055)
-    error = np.abs(picture[row, column][clear] - encoded * 255).max(axis=1)
+    error = np.abs(picture[row, column][clear] - encoded(expected_colors(points)[clear])).max(
+        axis=1
+    )
     assert np.median(error) < 2
     assert np.percentile(error, 90) < 6  # the grid's axis and the cursor cover some
     sidebar = picture[90:1000, 840:1030].min(axis=-1)

@@ -1,22 +1,22 @@
 """The add-on's preview, installed: in a window, and without one."""
 
 import json
-import subprocess
 
 import numpy as np
 import pytest
 from blender_runs import (
     GRADED_SPHERE,
     RED,
-    SCREENSHOTS,
     SCRIPTS,
     STEEL,
     VERSIONS,
+    encoded,
     expected_colors,
     install_for_window,
     linear,
     run_in_window,
     run_script,
+    screenshot,
     write_scene,
 )
 
@@ -29,33 +29,15 @@ def window(zips, tmp_path_factory):
     folder = tmp_path_factory.mktemp("window")
     install_for_window(zips, folder / "user")
     scene = write_scene(folder, GRADED_SPHERE)
-    result, done = run_in_window(
+    return run_in_window(
         SCRIPTS / "gui_preview.py", scene,
         user_folder=folder / "user", size=(WIDTH, HEIGHT), limit=500,
     )  # fmt: skip
-    assert "Traceback" not in done.stdout + done.stderr
-    return result
-
-
-def picture(name):
-    """A screenshot as (HEIGHT, WIDTH, 3), 0 to 255."""
-    raw = subprocess.run(
-        ["convert", str(SCREENSHOTS / f"{name}.png"), "-depth", "8", "rgb:-"],
-        capture_output=True, check=True,
-    ).stdout  # fmt: skip
-    return np.frombuffer(raw, np.uint8).reshape(HEIGHT, WIDTH, 3).astype(float)
 
 
 def at(name, place):
     column, row = (int(c) for c in place)
-    return picture(name)[row, column]
-
-
-def encoded(color):
-    """0 to 255 on the screen, of linear colours."""
-    color = np.asarray(color)
-    low = color <= 0.0031308
-    return 255 * np.where(low, 12.92 * color, 1.055 * np.maximum(color, 0) ** (1 / 2.4) - 0.055)
+    return screenshot(name)[row, column]
 
 
 def is_background(color):
@@ -71,7 +53,7 @@ def test_preview_shows_the_part(window):
 
 
 def test_a_cut_shows_the_exact_colours(window):
-    shown = picture("preview_cut")
+    shown = screenshot("preview_cut")
     places = np.array([place for _, place in window["cut"]]).astype(int)
     points = np.array([point for point, _ in window["cut"]])
     expected = encoded(expected_colors(points))
@@ -79,7 +61,7 @@ def test_a_cut_shows_the_exact_colours(window):
     assert len(error) > 800
     assert np.percentile(error, 95) < 3  # a few are under the gizmos
     # A smaller cut leaves what is before the middle.
-    there = picture("preview_less_cut")[places[:, 1], places[:, 0]]
+    there = screenshot("preview_less_cut")[places[:, 1], places[:, 0]]
     assert np.median(np.abs(there - expected).max(axis=1)) > 5
 
 
@@ -131,7 +113,7 @@ def test_the_probe_tells_what_is_under_the_cursor(window):
 
 
 def test_the_legend_has_the_materials_colours(window):
-    corner = picture("preview_whole")[HEIGHT // 2 :, : WIDTH // 4].reshape(-1, 3)
+    corner = screenshot("preview_whole")[HEIGHT // 2 :, : WIDTH // 4].reshape(-1, 3)
     for color in (RED, STEEL):
         # Blender's own shader decodes theme colours by a cubic polynomial.
         swatch = np.abs(corner - encoded(linear(color))).max(axis=1) < 7

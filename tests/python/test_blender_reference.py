@@ -108,7 +108,7 @@ def test_the_command(version, tmp_path):
 def window(tmp_path_factory):
     user = tmp_path_factory.mktemp("window") / "user"
     words = (SCRIPTS / "gui_reference.py", ROOT / "blender_addon")
-    return run_in_window(*words, user_folder=user, size=(1280, 800), limit=300)[0]
+    return run_in_window(*words, user_folder=user, size=(1280, 800), limit=300)
 
 
 def test_escape_stops_povray(window):

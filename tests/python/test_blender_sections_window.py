@@ -1,18 +1,18 @@
 """Section objects moved in a window of Blender 3.4.1: the cut in the preview follows."""
 
 import json
-import subprocess
 
 import numpy as np
 import pytest
 from blender_runs import (
     GRADED_SPHERE,
     RED,
-    SCREENSHOTS,
     SCRIPTS,
     STEEL,
+    encoded,
     linear,
     run_in_window,
+    screenshot,
     write_scene,
 )
 from repository import ROOT
@@ -34,34 +34,17 @@ def expected_colors(points):
 def window(tmp_path_factory):
     folder = tmp_path_factory.mktemp("sections-window")
     scene = write_scene(folder, SCENE)
-    result, done = run_in_window(
+    return run_in_window(
         SCRIPTS / "gui_sections.py", ROOT / "blender_addon", scene,
         user_folder=folder / "user", size=(WIDTH, HEIGHT), limit=500,
     )  # fmt: skip
-    assert "Traceback" not in done.stdout + done.stderr
-    return result
-
-
-def picture(name):
-    """A screenshot as (HEIGHT, WIDTH, 3), 0 to 255."""
-    raw = subprocess.run(
-        ["convert", str(SCREENSHOTS / f"{name}.png"), "-depth", "8", "rgb:-"],
-        capture_output=True, check=True,
-    ).stdout  # fmt: skip
-    return np.frombuffer(raw, np.uint8).reshape(HEIGHT, WIDTH, 3).astype(float)
-
-
-def encoded(color):
-    """0 to 255 on the screen, of linear colours, by the definition of sRGB."""
-    low = color <= 0.0031308
-    return 255 * np.where(low, 12.92 * color, 1.055 * np.maximum(color, 0) ** (1 / 2.4) - 0.055)
 
 
 def errors(name, pairs):
     """How far the screenshot is from the scene's colours at points, largest component each."""
     points = np.array([point for point, _ in pairs])
     places = np.array([place for _, place in pairs]).astype(int)
-    seen = picture(name)[places[:, 1], places[:, 0]]
+    seen = screenshot(name)[places[:, 1], places[:, 0]]
     return np.abs(seen - encoded(expected_colors(points))).max(axis=1)
 
 
@@ -88,7 +71,7 @@ def test_the_probe_reads_on_the_cut(window):
 
 def test_where_the_plane_takes_everything_a_message_says_so(window):
     (column, row), note = window["nothing"]
-    color = picture("section_nothing")[int(row), int(column)]
+    color = screenshot("section_nothing")[int(row), int(column)]
     assert np.ptp(color) < 3  # the theme's grey
     assert note == "the sections leave nothing of graded sphere"
 

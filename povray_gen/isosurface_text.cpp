@@ -5,6 +5,7 @@
 #include "povray_gen/scene_text.hpp"
 #include "povray_gen/vector_text.hpp"
 #include "sardf/error.hpp"
+#include "sardf/smooth_formula.hpp"
 
 namespace sardf::povray {
 
@@ -35,12 +36,14 @@ std::string negative(const std::string& function, double band) {
 }  // namespace
 
 GradientBound gradient_of(const PovrayScene& scene, bool exact) {
-  const CertifiedBound bound = certified_lipschitz(Evaluator(scene.solid), scene.bounds);
+  const CertifiedBound bound =
+      certified_lipschitz(Evaluator(with_smooth_bounds(scene.solid)), scene.bounds);
   const std::optional<double>& stated = scene.stated_lipschitz;
   if (bound.value < infinity && !exact) return {bound.value, true};
   if (stated && !(bound.value <= *stated)) return {*stated, false};
   if (bound.value < infinity) return {bound.value, true};
-  throw Error("POV-Ray needs a bound of the solid's gradient, and '" + bound.infinite_at +
+  const std::string at = certified_lipschitz(Evaluator(scene.solid), scene.bounds).infinite_at;
+  throw Error("POV-Ray needs a bound of the solid's gradient, and '" + at +
               "' has none; rewrite it, or state one: \"lipschitz\": L");
 }
 
@@ -58,6 +61,8 @@ std::vector<Piece> isosurface_pieces(const PovrayScene& scene, const GradientBou
   options.overlap = 4 * options.accuracy;
   // POV-Ray's own normals are differences over the accuracy.
   options.reach = 4 * options.accuracy;
+  // What the formula is worth further from the surface shows nowhere.
+  options.exact_within = 2 * options.reach * whole.value;
   options.progress = progress;
   return pieces_of(scene.solid, scene.bounds, options);
 }

@@ -9,6 +9,7 @@
 
 #include "povray_gen/expression_of.hpp"
 #include "sardf/shorten.hpp"
+#include "sardf/smooth_formula.hpp"
 
 namespace sardf::povray {
 
@@ -17,20 +18,19 @@ namespace {
 // Cells along the longest side of the bounds, a power of two.
 constexpr int finest = 32;
 // Halvings of the bounds: at most so many pieces.
-constexpr int most_halvings = 6;
+constexpr int most_halvings = 7;
 // What a ray costs that meets a piece, in steps of a formula: POV-Ray's own work, and the calls
 // that find that nothing is there.
 constexpr double work_per_box = 60;
 constexpr double calls_per_box = 4;
 // What of the time a split has to save to be worth the text.
 constexpr double worthwhile = 0.97;
-// Boxes for a bound of the gradient, over all of a piece and near its surface.
-constexpr int lipschitz_boxes = 32;
-constexpr double band_steps = 2e5;
+// Boxes for the bounds of the gradient: of all pieces, and of each.
+constexpr int all_boxes = 60'000, fewest_boxes = 500, most_boxes = 20'000;
 // Values beyond this share of a piece's diagonal are cut off where that makes the bound so much
 // smaller that it outweighs the longer steps.
 constexpr double band_share = 0.05;
-constexpr double steeper_off_surface = 1.1;
+constexpr double steeper_off_surface = 1.05;
 
 using Index = std::array<int, 3>;
 
@@ -55,7 +55,7 @@ BoundingBox grown(const BoundingBox& box, double by) {
 class Splitter {
  public:
   Splitter(const Expression& solid, const BoundingBox& bounds, const PieceOptions& options)
-      : bounds_(bounds), options_(options) {
+      : bounds_(bounds), options_(options), demand_{-options.exact_within, options.exact_within} {
     const Vec3 size = bounds.size();
     const double longest = std::max({size[0], size[1], size[2]});
     for (int axis = 0; axis < 3; ++axis) {
@@ -128,7 +128,7 @@ class Splitter {
       whole_.cells.push_back(range.lo);
       return;
     }
-    const auto shorter = std::make_shared<const Evaluator>(here.shortened());
+    const auto shorter = std::make_shared<const Evaluator>(here.shortened(demand_));
     CellRange low = range, high = range;
     low.hi[longest] = high.lo[longest] = (range.lo[longest] + range.hi[longest]) / 2;
     find_cells(low, shorter);
@@ -173,7 +173,8 @@ class Splitter {
     if (out.cells.empty()) return out;
     out.range = range_of(out.cells);
     const BoundingBox box = grown(box_of(out.range), options_.overlap + options_.reach);
-    out.field = std::make_shared<const Evaluator>(Shortening(*region.field, box).shortened());
+    out.field =
+        std::make_shared<const Evaluator>(Shortening(*region.field, box).shortened(demand_));
     return out;
   }
 
@@ -219,6 +220,7 @@ class Splitter {
 
   BoundingBox bounds_;
   const PieceOptions& options_;
+  Demand demand_;
   Index count_{};
   Region whole_;
   std::unordered_map<const Operation*, double> steps_;
@@ -228,16 +230,17 @@ class Splitter {
 
 namespace {
 
-// Cuts off what is steep far from the surface, where that makes the bound much smaller. False: the
-// piece has no surface at all.
-bool cut_off(Piece& piece, const Evaluator& field, double steps, double whole_gradient) {
+// Bounds the gradient, and cuts off what is steep far from the surface where that makes the bound
+// much smaller. False: the piece has no surface at all.
+bool bound_gradient(Piece& piece, BoundEffort effort) {
+  const Evaluator bounded(with_smooth_bounds(piece.solid));
   const double band = band_share * piece.box.diagonal();
-  const int boxes = int(std::clamp(band_steps / steps, 50.0, 10'000.0));
-  const double known = std::min(piece.gradient, whole_gradient);
-  const std::optional<double> bound = band_lipschitz_bound(field, piece.box, band, boxes);
-  if (!bound) return false;
-  if (*bound * steeper_off_surface < known) {
-    piece.gradient = *bound;
+  const auto near = band_lipschitz_bound(bounded, piece.box, band, effort);
+  if (!near) return false;
+  effort.enough = steeper_off_surface * *near;
+  piece.gradient = *band_lipschitz_bound(bounded, piece.box, infinity, effort);
+  if (piece.gradient > effort.enough) {
+    piece.gradient = *near;
     piece.band = band;
   }
   return true;
@@ -249,6 +252,9 @@ std::vector<Piece> pieces_of(const Expression& solid, const BoundingBox& bounds,
                              const PieceOptions& options) {
   Splitter splitter(solid, bounds, options);
   const std::vector<Region> regions = splitter.regions();
+  BoundEffort effort;
+  effort.boxes = std::clamp(all_boxes / int(regions.size()), fewest_boxes, most_boxes);
+  effort.progress = options.progress;
   std::vector<Piece> out;
   for (const Region& region : regions) {
     if (options.progress && !options.progress(0)) throw Cancelled();
@@ -256,11 +262,8 @@ std::vector<Piece> pieces_of(const Expression& solid, const BoundingBox& bounds,
     if (regions.size() > 1) {
       piece.box = grown(splitter.box_of(region.range), options.overlap);
       piece.solid = expression_of(*region.field);
-      piece.gradient = lipschitz_bound(*region.field, piece.box, lipschitz_boxes);
     }
-    const double steps = splitter.steps_of(*region.field);
-    const bool has_surface = cut_off(piece, *region.field, steps, options.gradient);
-    if (has_surface || regions.size() == 1) out.push_back(std::move(piece));
+    if (bound_gradient(piece, effort) || regions.size() == 1) out.push_back(std::move(piece));
   }
   if (out.empty()) out.push_back({bounds, solid});
   if (options.progress && !options.progress(1)) throw Cancelled();

@@ -15,7 +15,9 @@ namespace sardf::povray {
 
 struct Piece {
   BoundingBox box;
-  Expression solid;  ///< equal to the whole solid, bit for bit, in the box and `reach` around
+  /// In the box and `reach` around equal to the whole solid, bit for bit, where either is within
+  /// `exact_within`; elsewhere it has the same sign.
+  Expression solid;
   /// A bound of |grad solid| in the box where |solid| <= band; infinity if that of the whole is no
   /// larger.
   double gradient = infinity;
@@ -24,10 +26,11 @@ struct Piece {
 };
 
 struct PieceOptions {
-  double overlap = 0;          ///< how far pieces extend beyond the faces that they share
-  double reach = 0;            ///< how far outside of its box a piece is evaluated
-  double accuracy = 0;         ///< to which POV-Ray finds the surface
-  double gradient = infinity;  ///< a bound of |grad solid| in the bounds
+  double overlap = 0;              ///< how far pieces extend beyond the faces that they share
+  double reach = 0;                ///< how far outside of its box a piece is evaluated
+  double exact_within = infinity;  ///< values beyond need only the right sign
+  double accuracy = 0;             ///< to which POV-Ray finds the surface
+  double gradient = infinity;      ///< a bound of |grad solid| in the bounds
   Progress progress = {};
 };
 

@@ -1,12 +1,19 @@
 #include "sardf/certify.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <queue>
 #include <unordered_map>
+#include <utility>
+
+#include "sardf/shorten.hpp"
 
 namespace sardf {
 
 namespace {
+
+// Of the diagonal: parts that small are not split for a bound within a band.
+constexpr double smallest_part = 1.0 / 400;
 
 /// A value with and without blends: both lie in `value`, and differ by at most `error`.
 struct Deviation {
@@ -60,54 +67,76 @@ std::array<BoundingBox, 2> halves(const BoundingBox& box) {
 }
 
 /// The parts of a box in which values may lie within a band around 0, the one with the largest
-/// bound first; what is proven to lie outside is left out.
+/// bound first; what is proven to lie outside is left out. Parts have their own programs, in which
+/// what does not matter for values in the band is left out: it has no slope there either.
 class BoundedParts {
  public:
   BoundedParts(const Evaluator& evaluator, const BoundingBox& box, double band)
-      : evaluator_(evaluator), band_(band), has_gradients_(evaluator.has_gradients()) {
-    add(box, infinity);
+      : band_(band), has_gradients_(evaluator.has_gradients()) {
+    // The caller's evaluator outlives this object.
+    add({box, infinity, {std::shared_ptr<void>(), &evaluator}});
   }
 
   struct Part {
     BoundingBox box;
     double length;
+    std::shared_ptr<const Evaluator> field;
     bool operator<(const Part& other) const { return length < other.length; }
   };
   bool empty() const { return parts_.empty(); }
   const Part& worst() const { return parts_.top(); }
 
-  /// Halves the worst part, until there are so many parts, or its bound lies close to a gradient
-  /// that is attained, or its diagonal is below the smallest.
-  void split(int most, double smallest) {
-    constexpr double close_enough = 1.001;
-    for (int used = 1; used < most && !parts_.empty(); ++used) {
+  /// Halves the worst part, until there are so many parts, or its bound is small enough or less
+  /// than close_enough times a gradient that is attained, or its diagonal is below the smallest.
+  void split(const BoundEffort& effort, double close_enough, double smallest) {
+    constexpr int boxes_per_report = 64;
+    const auto is_done = [&](const Part& part) {
+      return part.length <= max(effort.enough, close_enough * attained_) ||
+             (effort.enough > 0 && attained_ > effort.enough) || part.box.diagonal() < smallest;
+    };
+    for (int used = 1; used < effort.boxes && !parts_.empty() && !is_done(worst()); ++used) {
+      if (used % boxes_per_report == 0 && effort.progress && !effort.progress(0)) {
+        throw Cancelled();
+      }
       const Part part = worst();
-      if (part.length <= close_enough * attained_ || part.box.diagonal() < smallest) return;
       parts_.pop();
-      for (const BoundingBox& half : halves(part.box)) add(half, part.length);
+      const std::shared_ptr<const Evaluator> field = shortened(part);
+      for (const BoundingBox& half : halves(part.box)) add({half, part.length, field});
     }
   }
 
  private:
   // A part is never worse than the whole.
-  void add(const BoundingBox& box, double whole) {
-    const Slope slope = evaluator_.slope(box);
+  void add(Part part) {
+    const Slope slope = part.field->slope(part.box);
     if (slope.value.lo > band_ || slope.value.hi < -band_) return;
-    parts_.push({box, min(whole, slope.length)});
-    if (is_finite(box)) attained_ = max(attained_, steepness_at(box.center()));
+    part.length = min(part.length, slope.length);
+    if (is_finite(part.box)) {
+      attained_ = max(attained_, steepness_at(*part.field, part.box.center()));
+    }
+    parts_.push(std::move(part));
+  }
+
+  // The part's program without what does not matter in it; its own where that saves little.
+  std::shared_ptr<const Evaluator> shortened(const Part& part) const {
+    const size_t size = part.field->tape().instructions().size();
+    if (size < 2) return part.field;
+    auto shorter = std::make_shared<const Evaluator>(
+        Shortening(*part.field, part.box).shortened(Demand{-band_, band_}));
+    return 10 * shorter->tape().instructions().size() <= 9 * size ? shorter : part.field;
   }
 
   // 0 where the value is not in the band, there is no gradient, or it is not known.
-  double steepness_at(const Vec3& point) const {
+  double steepness_at(const Evaluator& field, const Vec3& point) const {
     if (!has_gradients_) return 0;
     double value;
     Vec3 gradient;
-    evaluator_.gradients(point.data(), 1, &value, gradient.data());
+    double* const to[3] = {&gradient[0], &gradient[1], &gradient[2]};
+    field.gradient_block(&point[0], &point[1], &point[2], 1, &value, to);
     const double length = norm(gradient);
     return std::isnan(length) || std::abs(value) > band_ ? 0 : length;
   }
 
-  const Evaluator& evaluator_;
   double band_;
   bool has_gradients_;
   double attained_ = 0;
@@ -158,16 +187,17 @@ double error_bound(const Expression& expression) { return certified_error(expres
 
 CertifiedBound certified_lipschitz(const Evaluator& evaluator, const BoundingBox& box, int boxes) {
   BoundedParts parts(evaluator, box, infinity);
-  if (is_finite(box)) parts.split(boxes, 0);
+  if (is_finite(box)) parts.split({boxes}, 1.001, 0);
   const double length = parts.worst().length;
   if (length < infinity) return {length, ""};
-  return {infinity, infinite_node(evaluator, parts.worst().box)};
+  return {infinity, infinite_node(*parts.worst().field, parts.worst().box)};
 }
 
 std::optional<double> band_lipschitz_bound(const Evaluator& evaluator, const BoundingBox& box,
-                                           double band, int boxes) {
+                                           double band, const BoundEffort& effort) {
+  constexpr double close_enough = 1.03;
   BoundedParts parts(evaluator, box, band);
-  parts.split(boxes, box.diagonal() / 100);
+  parts.split(effort, close_enough, smallest_part * box.diagonal());
   if (parts.empty()) return {};
   return parts.worst().length;
 }

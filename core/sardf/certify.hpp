@@ -31,10 +31,19 @@ CertifiedBound certified_lipschitz(const Evaluator& evaluator, const BoundingBox
 double lipschitz_bound(const Evaluator& evaluator, const BoundingBox& box,
                        int boxes = default_lipschitz_boxes);
 
-/// The same of min(band, max(-band, f)): of f where |f| <= band. Parts below 1 % of the box's
-/// diagonal are not split, since the bound stays as it is at an edge of the solid. Infinity if
-/// there is no bound; nothing where it is proven that no value lies in the band.
+/// How long to look for a bound.
+struct BoundEffort {
+  int boxes = default_lipschitz_boxes;
+  /// A bound that is small enough. A gradient that is longer ends the search, too.
+  double enough = 0;
+  Progress progress = {};  ///< called with 0, to be able to stop
+};
+
+/// The same of min(band, max(-band, f)), that is, of f where |f| <= band; within 3 % of a gradient
+/// that is attained there, if so many boxes suffice. Parts below 1/400 of the box's diagonal are
+/// not split, since the bound stays as it is at an edge of the solid. Infinity if there is no
+/// bound; nothing where it is proven that no value lies in the band. Cancelled.
 std::optional<double> band_lipschitz_bound(const Evaluator& evaluator, const BoundingBox& box,
-                                           double band, int boxes);
+                                           double band, const BoundEffort& effort);
 
 }  // namespace sardf

@@ -79,6 +79,9 @@ struct Kernels {
   Partials partials = nullptr;
 };
 
+class Operation;
+using OperationPointer = std::shared_ptr<const Operation>;
+
 struct Node;
 /// A handle to an immutable node of a graph (graph.hpp).
 using Expression = std::shared_ptr<const Node>;
@@ -106,6 +109,9 @@ class Operation {
   virtual Enclosure range(const Enclosure* in) const;
   /// What becomes of the operation over these ranges where `demand` is what matters of its result.
   virtual Fate fate(const Enclosure* in, const Demand& demand) const;
+  /// One that takes less work, with the same results in every bit over these ranges; null where
+  /// none is known.
+  virtual OperationPointer narrowed(const Enclosure*) const { return nullptr; }
   /// Bound of |result - result with min/max in place of the blend| for equal inputs.
   virtual double blend_error() const = 0;
   /// Bound of the sum of the absolute partial derivatives over all inputs in the intervals.
@@ -124,7 +130,5 @@ class Operation {
   /// inputs; null where that is not known.
   virtual Expression derivative(int k, std::span<const Expression> inputs) const;
 };
-
-using OperationPointer = std::shared_ptr<const Operation>;
 
 }  // namespace sardf

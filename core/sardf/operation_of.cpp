@@ -18,6 +18,11 @@ Fate Operation::fate(const Enclosure*, const Demand&) const { return {}; }
 
 namespace {
 
+Interval product_of_lengths(const Slope& a, const Slope& b) {
+  const Interval most = Interval(a.length) * Interval(b.length);
+  return {-most.hi, most.hi};
+}
+
 // From the scalar products of the partials' columns.
 double bound_by_columns(std::span<const Slope> rows) {
   double most = 0;
@@ -42,13 +47,9 @@ double bound_by_rows(std::span<const Slope> rows) {
   for (const Slope& row : rows) {
     double row_sum = 0;
     for (const Slope& other : rows) {
-      const double lengths = (Interval(row.length) * Interval(other.length)).magnitude();
-      Interval product = 0;
-      for (int axis = 0; axis < 3; ++axis) {
-        product = product + row.partial[axis] * other.partial[axis];
-      }
-      row_sum =
-          rounded_up(row_sum + (&row == &other ? lengths : min(lengths, product.magnitude())));
+      const double product =
+          &row == &other ? product_of_lengths(row, row).hi : scalar_product(row, other).magnitude();
+      row_sum = rounded_up(row_sum + product);
     }
     most = max(most, row_sum);
   }
@@ -56,6 +57,27 @@ double bound_by_rows(std::span<const Slope> rows) {
 }
 
 }  // namespace
+
+Interval scalar_product(const Slope& a, const Slope& b) {
+  Interval product = 0;
+  for (int axis = 0; axis < 3; ++axis) product = product + a.partial[axis] * b.partial[axis];
+  return intersect(product, product_of_lengths(a, b));
+}
+
+double weighted_length(std::span<const Interval> by, std::span<const Slope> in) {
+  double squared = 0;
+  for (size_t k = 0; k < in.size(); ++k) {
+    if (in[k].length == 0) continue;  // however large the partial
+    const Interval own = Interval(by[k].magnitude()) * Interval(in[k].length);
+    squared = rounded_up(squared + square(own).hi);
+    for (size_t j = 0; j < k; ++j) {
+      if (in[j].length == 0) continue;
+      const Interval both = by[j] * by[k] * scalar_product(in[j], in[k]);
+      squared = rounded_up(squared + max(0.0, 2 * both.hi));
+    }
+  }
+  return rounded_up(std::sqrt(squared));
+}
 
 double spectral_bound(std::span<const Slope> rows) {
   return rounded_up(std::sqrt(min(bound_by_columns(rows), bound_by_rows(rows))));

@@ -13,6 +13,11 @@
 //   static constexpr std::array<int, arity> monotone;
 //                                      sign of each partial derivative everywhere
 //   double gain(Interval, ...) const;  bound of the sum of |partials|
+//   double steepness(Interval x, Interval y, double longer, Interval product) const;
+//                                      of a blend: bound of the gradient's length where those of
+//                                      x and y are at most `longer` and have this scalar product
+//   std::optional<Op> near(Choice, Choice) const;  the same over these ranges for less work
+//   void append_edges(std::vector<double>&) const; what tells such an operation from the whole one
 //   double blend_error() const;        bound of |this - its min/max counterpart|
 //   static constexpr Join join;        which boolean of a blend it is
 //   static constexpr bool mean_value = true;       its slopes bound it better than its formula
@@ -50,6 +55,13 @@ constexpr bool is_monotone = requires { Op::monotone; };
 template <class Op>
 constexpr bool is_exact_distance = requires { Op::distance; };
 
+/// Encloses the scalar product of the gradients of two fields.
+Interval scalar_product(const Slope& a, const Slope& b);
+
+/// Bound of |Σ by_k grad in_k|. Gradients that are perpendicular add up as the sides of a right
+/// angle, those of which nothing is known as on a line.
+double weighted_length(std::span<const Interval> by, std::span<const Slope> in);
+
 /// The largest singular value of the 3-row matrix of intervals, from above: the square root of the
 /// greatest row sum of |JᵀJ|, which is tight for rotations and scalings.
 double spectral_bound(std::span<const Slope> rows);
@@ -66,6 +78,7 @@ class OperationOf final : public Operation {
     auto append = [&](const Parameter&, auto member) { append_numbers(numbers_, op_.*member); };
     if constexpr (requires { Op::parameters(append); }) Op::parameters(append);
     for (double a : numbers_) magnitude_ = std::max(magnitude_, std::abs(a));
+    if constexpr (requires { op_.append_edges(numbers_); }) op_.append_edges(numbers_);
     std::array<Enclosure, arity> anything;
     anything.fill({Interval::all(), true});
     // A blend may add 0 to one of its arguments: the formula alone does not show that.
@@ -127,22 +140,30 @@ class OperationOf final : public Operation {
   Slope slope(const Slope* in) const override {
     std::array<Interval, arity> values;
     for (int k = 0; k < arity; ++k) values[k] = in[k].value;
-    const std::array<Interval, arity> by = local_partials(values.data());
+    std::array<Interval, arity> by = local_partials(values.data());
+    const double gain = gain_with(by, values.data());
+    for (Interval& partial : by) partial = intersect(partial, {-gain, gain});
     Slope out;
     out.value = interval(values.data());
-    double sum = 0, steepest = 0;
+    double steepest = 0;
     for (int k = 0; k < arity; ++k) {
       for (int axis = 0; axis < 3; ++axis) {
         out.partial[axis] = out.partial[axis] + by[k] * in[k].partial[axis];
       }
-      sum = rounded_up(sum + rounded_up(times(by[k].magnitude(), in[k].length)));
       if (by[k].magnitude() > 0) steepest = max(steepest, in[k].length);
     }
     const Interval norm = sardf::length(out.partial[0], out.partial[1], out.partial[2]);
-    out.length = min(min(norm.hi, sum), rounded_up(times(gain(values.data()), steepest)));
+    out.length = min(norm.hi, weighted_length(by, {in, size_t(arity)}));
+    out.length = min(out.length, rounded_up(times(gain, steepest)));
     if constexpr (is_exact_distance<Op>) {
       out.length = min(out.length, spectral_bound({in, size_t(arity)}));
     }
+    if constexpr (requires { op_.steepness(in[0].value, in[1].value, steepest, in[0].value); }) {
+      const Interval product = scalar_product(in[0], in[1]);
+      out.length = min(out.length, op_.steepness(values[0], values[1], steepest, product));
+    }
+    const Interval within{-out.length, out.length};
+    for (Interval& partial : out.partial) partial = intersect(partial, within);
     return out;
   }
 
@@ -178,14 +199,16 @@ class OperationOf final : public Operation {
     return fate_of(chosen(in));
   }
 
-  double gain(const Interval* in) const override {
-    if constexpr (requires { gain_of(op_, in, std::make_index_sequence<arity>()); }) {
-      return gain_of(op_, in, std::make_index_sequence<arity>());
+  OperationPointer narrowed(const Enclosure* in) const override {
+    if constexpr (requires(Choice c) { op_.near(c, c); }) {
+      auto near = op_.near(Choice::of(in[0].value, in[0].may_be_nan),
+                           Choice::of(in[1].value, in[1].may_be_nan));
+      if (near) return std::make_shared<OperationOf>(std::move(*near));
     }
-    double sum = 0;
-    for (const Interval& by : local_partials(in)) sum = rounded_up(sum + by.magnitude());
-    return sum;
+    return nullptr;
   }
+
+  double gain(const Interval* in) const override { return gain_with(local_partials(in), in); }
 
   double blend_error() const override {
     if constexpr (requires { op_.blend_error(); }) return op_.blend_error();
@@ -316,6 +339,15 @@ class OperationOf final : public Operation {
       }
     }
     return by;
+  }
+
+  double gain_with(const std::array<Interval, arity>& partials, const Interval* in) const {
+    if constexpr (requires { gain_of(op_, in, std::make_index_sequence<arity>()); }) {
+      return gain_of(op_, in, std::make_index_sequence<arity>());
+    }
+    double sum = 0;
+    for (const Interval& by : partials) sum = rounded_up(sum + by.magnitude());
+    return sum;
   }
 
   template <class O, size_t... I>

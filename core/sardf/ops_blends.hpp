@@ -4,6 +4,9 @@
 // A blend's intersection never decreases in either argument. It may state
 //   blend_error()        bound of |intersection - min|, infinite by default
 //   gain(x, y)           bound of the sum of its partial derivatives over two intervals
+//   steepness(x, y, longer, product)
+//                        bound of its gradient's length where x and y have gradients of at most
+//                        the length `longer` and this scalar product
 //   unite(x, y)          the union, where there is a shorter form with equal results
 #pragma once
 
@@ -49,6 +52,11 @@ struct UnionOf : BlendOperation<Blend> {
   {
     return Blend::gain(-x, -y);
   }
+  double steepness(Interval x, Interval y, double longer, Interval product) const
+    requires requires(const Blend& b) { b.steepness(x, y, longer, product); }
+  {
+    return Blend::steepness(-x, -y, longer, product);
+  }
 };
 
 template <class Blend>
@@ -66,6 +74,11 @@ struct DifferenceOf : BlendOperation<Blend> {
     requires requires(const Blend& b) { b.gain(x, y); }
   {
     return Blend::gain(x, -y);
+  }
+  double steepness(Interval x, Interval y, double longer, Interval product) const
+    requires requires(const Blend& b) { b.steepness(x, y, longer, product); }
+  {
+    return Blend::steepness(x, -y, longer, -product);
   }
 };
 
@@ -118,6 +131,33 @@ struct Smooth {
   T intersection(T x, T y) const {
     const T overlap = max(T(k) - abs(x - y), T(0.0));
     return min(x, y) - square(overlap) * T(1 / (4 * k));
+  }
+};
+
+/// R-equivalence of two distances: (a^-n + b^-n)^(-1/n), smooth away from their features; the
+/// smaller one where it is not positive. It is associative. The partials (w/a)^(n+1) and
+/// (w/b)^(n+1) of the result w add up to at most (w/a)^n + (w/b)^n = 1. Source: Biswas, Shapiro,
+/// "Approximate distance fields with non-vanishing gradients", after Rvachev.
+struct Equivalence {
+  static constexpr const char *name = "equivalence",
+                              *doc = "The distance to two features, smooth away from them.";
+  static constexpr Kind kind = Kind::internal;
+  static constexpr int arity = 2;
+  double order = 1;
+  template <class V>
+  static void parameters(V& v) {
+    v(Parameter{"order", "n, the higher, the nearer to the smaller", Unit::none, Range::positive},
+      &Equivalence::order);
+  }
+  double gain(Interval, Interval) const { return 1; }
+  template <class T>
+  T eval(T a, T b) const {
+    const T lo = smaller(a, b), hi = larger(a, b);
+    return shortcut(lo <= T(0.0), lo, [&] {
+      // The ratio neither overflows nor vanishes. Its limits change no value, but bound it.
+      const T ratio = max(T(0.0), min(T(1.0), lo / hi));
+      return lo * pow(T(1.0) + pow(ratio, T(order)), T(-1 / order));
+    });
   }
 };
 

@@ -51,6 +51,7 @@ struct Below {
   static void parameters(V& v) {
     v(Parameter{"height", "where a and b agree"}, &Below::height);
   }
+  double gain(Interval, Interval, Interval) const { return 1; }
   template <class T>
   T eval(T z, T a, T b) const {
     return select(z < T(height), a, b);

@@ -1,6 +1,9 @@
 // Solids of the xy plane with exact signed distance; they do not depend on z.
 #pragma once
 
+#include <optional>
+
+#include "sardf/numbers/choice.hpp"
 #include "sardf/ops_solids.hpp"
 
 namespace sardf {
@@ -79,49 +82,71 @@ struct Polygon : PlaneSolid {
   }
   /// Throws Error for repeated vertices and for edges that cross or touch, naming them.
   void prepare();
+  /// The same in every bit for points in a box, in fewer edges; nothing where most of them matter.
+  std::optional<Polygon> near(const Choice& x, const Choice& y) const;
+  /// What tells polygons for boxes from the whole one.
+  void append_edges(std::vector<double>& numbers) const;
 
   template <class T>
   T eval(T x, T y) const {
-    T best_squared(0.0), best_line(0.0), at_corner(0.0), parity(1.0);
-    const size_t n = vertices.size();
-    for (size_t i = 0; i < n; ++i) {
-      const Vec2 &a = vertices[i], &b = vertices[i + 1 < n ? i + 1 : 0];
-      const double ex = b[0] - a[0], ey = b[1] - a[1], squared = ex * ex + ey * ey;
-      const T px = x - T(a[0]), py = y - T(a[1]);
-      const T along = T(ex / squared) * px + T(ey / squared) * py;
-      // As the foot moves along the edge, neither the distance to it changes nor to its line.
-      const T t = freeze(min(max(along, T(0.0)), T(1.0)));
-      const T away_x = px - T(ex) * t, away_y = py - T(ey) * t;
-      const T edge_squared = square(away_x) + square(away_y);
-      // Exactly 0 at both ends of the edge.
-      const T line =
-          T(turn_ * ex / std::sqrt(squared)) * away_y - T(turn_ * ey / std::sqrt(squared)) * away_x;
-      const T corner = select(along > T(0.0) && along < T(1.0), T(0.0), T(1.0));
-      if (i == 0) {
-        best_squared = edge_squared;
-        best_line = line;
-        at_corner = corner;
-      } else {
-        const auto nearer = edge_squared < best_squared;
-        best_line = select(nearer, line, best_line);
-        at_corner = select(nearer, corner, at_corner);
-        best_squared = select(nearer, edge_squared, best_squared);
+    T best_squared(0.0), best_line(0.0), at_corner(0.0), parity(parity_);
+    bool is_first = true;
+    for (const Edge& edge : edges_) {
+      const Foot<T> foot = foot_on(edge, x, y);
+      if (edge.measures && is_first) {
+        best_squared = foot.squared;
+        best_line = foot.line;
+        at_corner = foot.corner;
+        is_first = false;
+      } else if (edge.measures) {
+        const auto nearer = foot.squared < best_squared;
+        best_line = select(nearer, foot.line, best_line);
+        at_corner = select(nearer, foot.corner, at_corner);
+        best_squared = select(nearer, foot.squared, best_squared);
       }
-      const double lower = std::min(a[1], b[1]), upper = std::max(a[1], b[1]);
-      if (lower < upper) {
-        const double up = b[1] > a[1] ? turn_ : -turn_;
-        // Left of an upward edge, right of a downward one, in the edge's half-open span of y.
-        const auto crosses = y >= T(lower) && y < T(upper) && T(up) * line > T(0.0);
-        parity = select(crosses, -parity, parity);
-      }
+      if (edge.crosses) parity = select(is_crossed(edge, y, foot.line), -parity, parity);
     }
+    if (!has_corners_) return best_line;
     // No root has a slope at 0, but an edge's line has one.
     const auto by_line = at_corner < T(0.5) || best_squared <= T(0.0);
     return shortcut(by_line, best_line, [&] { return -parity * sqrt(best_squared); });
   }
 
  private:
-  double turn_ = 1;  // 1: counter-clockwise
+  struct Edge {
+    int number = 0;
+    Vec2 from{}, along{}, line{};  // the first corner, to the next one, factors of its line
+    double squared = 0, lower = 0, upper = 0, up = 1;
+    bool measures = true;  // whether it may be the nearest one
+    bool crosses = false;  // whether a ray along x may cross it
+  };
+  template <class T>
+  struct Foot {
+    T squared, line, corner;
+  };
+
+  template <class T>
+  static Foot<T> foot_on(const Edge& edge, const T& x, const T& y) {
+    const double ex = edge.along[0], ey = edge.along[1];
+    const T px = x - T(edge.from[0]), py = y - T(edge.from[1]);
+    const T along = T(ex / edge.squared) * px + T(ey / edge.squared) * py;
+    // As the foot moves along the edge, neither the distance to it changes nor to its line.
+    const T t = freeze(min(max(along, T(0.0)), T(1.0)));
+    const T away_x = px - T(ex) * t, away_y = py - T(ey) * t;
+    const T squared = square(away_x) + square(away_y);
+    // Exactly 0 at both ends of the edge.
+    const T line = T(edge.line[0]) * away_y - T(edge.line[1]) * away_x;
+    return {squared, line, select(along > T(0.0) && along < T(1.0), T(0.0), T(1.0))};
+  }
+  /// Left of an upward edge, right of a downward one, in the edge's half-open span of y.
+  template <class T>
+  static auto is_crossed(const Edge& edge, const T& y, const T& line) {
+    return y >= T(edge.lower) && y < T(edge.upper) && T(edge.up) * line > T(0.0);
+  }
+
+  std::vector<Edge> edges_;
+  double parity_ = 1;        // of the crossings that are the same all over the box
+  bool has_corners_ = true;  // whether a corner may be the nearest point
 };
 
 using PlaneOps = OpList<Disc, Box2d, HalfPlane, Polygon>;

@@ -60,6 +60,16 @@ struct Sardf {
   double gain(Interval x, Interval y) const {
     return can_reach_outer_corner(x, y, radius) ? 1.1715728752538102 : 1;  // 4 - 2 sqrt(2)
   }
+  /// With the angle's cosine C and sine S on an arc, the partials are C/D and S/D, where D is
+  /// (1 + r') (C + S) - r'. For r' >= 0 they add up to at most 1. For r' = -1/2, gradients of the
+  /// length L with the product p, and s = C + S in [1, sqrt(2)], the square of the result's length
+  /// is at most 4 (L² + (s² - 1) p) / (1 + s)²: that falls and then rises with s.
+  double steepness(Interval x, Interval y, double longer, Interval product) const {
+    if (!can_reach_outer_corner(x, y, radius)) return longer;
+    constexpr double at_middle = 0.6862915010152397;  // 4 / (1 + sqrt(2))²
+    const double squared = longer * longer;
+    return rounded_up(std::sqrt(max(squared, at_middle * (squared + product.hi))), 8);
+  }
 
   template <class T>
   T intersection(T x, T y) const {
@@ -109,6 +119,11 @@ struct SardfC1 {
   double blend_error() const { return rounded_up(corner_cut * radius, 2); }
   double gain(Interval x, Interval y) const {
     return can_reach_outer_corner(x, y, radius) ? 1.4142135623730952 : 1;  // sqrt(2)
+  }
+  /// As of sardf, with r' between -1 and 0: D is at least 1.
+  double steepness(Interval x, Interval y, double longer, Interval product) const {
+    if (!can_reach_outer_corner(x, y, radius)) return longer;
+    return rounded_up(std::sqrt(longer * longer + max(product.hi, 0.0)), 8);
   }
 
   template <class T>
@@ -181,6 +196,7 @@ struct SardfC1 {
 };
 
 using BlendList = OpList<Sardf, SardfC1, MinMax, RFunction, Smooth>;
-using BlendOps = OpsOfBlends<Sardf, SardfC1, MinMax, RFunction, Smooth>;
+using BlendOps =
+    Joined<OpsOfBlends<Sardf, SardfC1, MinMax, RFunction, Smooth>, OpList<Equivalence>>::type;
 
 }  // namespace sardf

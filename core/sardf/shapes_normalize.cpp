@@ -4,6 +4,8 @@
 
 #include "sardf/arithmetic.hpp"
 #include "sardf/derivative.hpp"
+#include "sardf/operation_of.hpp"
+#include "sardf/ops_blends.hpp"
 #include "sardf/symbol.hpp"
 
 namespace sardf {
@@ -100,19 +102,12 @@ Expression Normalized::expression() const {
 }
 
 Expression REquivalence::expression() const {
-  Symbol smallest(of[0].expression());
-  for (const Field& u : of) smallest = min(smallest, Symbol(u.expression()));
-  if (of.size() == 1) return smallest.node;
-  // Ratios to the smallest neither overflow nor vanish together. What limits them and their sum
-  // changes no value, but bounds them.
-  const Symbol zero(0.0), one(1.0);
-  Symbol sum;
-  for (const Field& u : of) {
-    const Symbol ratio = smallest / Symbol(u.expression());
-    sum = sum + pow(max(zero, min(one, ratio)), Symbol(order));
-  }
-  const Symbol joined = smallest * pow(max(one, sum), Symbol(-1 / order));
-  return select(smallest <= zero, smallest, joined).node;
+  Equivalence pair;
+  pair.order = order;
+  const OperationPointer join = make_operation(pair);
+  Expression joined = of[0].expression();
+  for (size_t i = 1; i < of.size(); ++i) joined = call(join, {joined, of[i].expression()});
+  return joined;
 }
 
 Quality REquivalence::quality() const {

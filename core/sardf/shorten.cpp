@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <memory>
+#include <utility>
 
 #include "sardf/numbers/choice.hpp"
 #include "sardf/operation_of.hpp"
@@ -91,16 +93,31 @@ class Writer {
         }
         continue;
       }
-      Code::Step step{tape_.instructions()[v - first_].operation, {}};
+      Code::Step step{narrowed(v), {}};
       const int arity = step.operation->info().arity;
       for (int k = 0; k < arity; ++k) step.in[k] = placed(inputs_[v - first_][k]);
       place_[v] = append(step);
     }
     for (const uint32_t output : outputs) code_.outputs.push_back(placed(output));
+    if (!made_.empty()) code_.source = std::make_shared<Source>(tape_.source(), std::move(made_));
     return std::move(code_);
   }
 
  private:
+  /// What keeps the operations alive: of the longer program, and made for this one.
+  using Source = std::pair<std::shared_ptr<const void>, std::vector<OperationPointer>>;
+
+  // The operation of a value, or one for less work.
+  const Operation* narrowed(uint32_t v) {
+    const Operation* operation = tape_.instructions()[v - first_].operation;
+    std::array<Enclosure, max_arity> at;
+    for (int k = 0; k < max_arity; ++k) at[k] = ranges_[inputs_[v - first_][k]];
+    OperationPointer made = operation->narrowed(at.data());
+    if (!made) return operation;
+    made_.push_back(std::move(made));
+    return made_.back().get();
+  }
+
   // The value that stands for a number: they come after all others.
   uint32_t number(double value) {
     size_t k = 0;
@@ -145,6 +162,7 @@ class Writer {
   std::vector<Origin> origin_;
   std::vector<double> numbers_;
   std::vector<uint32_t> place_, negative_;  // values of the new program
+  std::vector<OperationPointer> made_;
   Code code_;
 };
 
@@ -180,9 +198,12 @@ Shortening::Shortening(const Evaluator& evaluator, const BoundingBox& box)
 }
 
 Evaluator Shortening::shortened(Wanted wanted) const {
-  Writer writer(tape_, first_, in_, ranges_);
   // Values of 0 or more are as good as one another, and so are those clearly below.
-  const Demand demand = wanted == Wanted::signs ? Demand{-1e-30, 0} : Demand{};
+  return shortened(wanted == Wanted::signs ? Demand{-1e-30, 0} : Demand{});
+}
+
+Evaluator Shortening::shortened(const Demand& demand) const {
+  Writer writer(tape_, first_, in_, ranges_);
   for (const uint32_t output : outputs_) writer.need(output, demand);
   writer.decide();
   return Evaluator(Tape(writer.write(outputs_)));

@@ -33,6 +33,9 @@ class Shortening {
   /// outputs are negative at the same points. Gradients are equal, too, but where that of the full
   /// program is NaN: what is found not to vary has the derivative 0 here.
   Evaluator shortened(Wanted wanted = Wanted::values) const;
+  /// The same bits where an output lies between the demand's floor and ceiling; where it does not,
+  /// that of the shorter program lies beyond the same end.
+  Evaluator shortened(const Demand& demand) const;
 
  private:
   const Tape& tape_;

@@ -8,6 +8,8 @@
 
 #include "laws.hpp"
 #include "sardf/arithmetic.hpp"
+#include "sardf/blend.hpp"
+#include "sardf/shapes_contour.hpp"
 
 namespace sardf {
 namespace {
@@ -136,6 +138,99 @@ TEST(LipschitzBound, ComesNearTheTruthBySplitting) {
   EXPECT_GE(split, attained);
   EXPECT_LT(split, 1.5 * attained);
   EXPECT_LT(split, 0.9 * once);
+}
+
+Expression half_plane_at(double angle) {
+  return constant(std::cos(angle)) * x + constant(std::sin(angle)) * y;
+}
+
+// The result's gradient on a level line's arc of radius r(d) around (d + r, d + r) is
+// (C g1 + S g2) / ((1 + r') (C + S) - r') with the direction's cosine C and sine S (sardf paper,
+// 2.2). It is longest at the ends or in the middle of an arc outside, where r' = -1/2 for sardf and
+// -1 at the edge for sardf_c1.
+TEST(LipschitzBound, OfABlendDependsOnTheAngle) {
+  const BoundingBox box{{-0.6, -0.6, -1}, {0.6, 0.6, 1}};
+  for (const double degrees : {0.0, 20.0, 45.0, 62.0, 90.0, 120.0, 170.0}) {
+    const double angle = degrees / 180 * std::acos(-1);
+    const double cosine = std::cos(angle);
+    const Expression a = half_plane_at(0), b = half_plane_at(angle);
+    const double in_the_middle = std::sqrt(1 + cosine) / ((std::sqrt(2.0) + 1) / 2);
+    for (const auto& [name, truth] :
+         {std::pair("sardf", std::max(1.0, in_the_middle)),
+          std::pair("sardf_c1", std::sqrt(1 + std::max(0.0, cosine)))}) {
+      const BlendPointer blend = make_blend(name, {1.0});
+      const Expression joined[] = {call(blend->intersection, {a, b}), call(blend->unite, {a, b}),
+                                   call(blend->difference, {a, constant(-1) * b})};
+      for (const Expression& f : joined) {
+        const double bound = lipschitz_bound(Evaluator(f), box, 2000);
+        EXPECT_LE(bound, truth * (1 + 1e-9)) << name << ' ' << degrees;
+        EXPECT_GE(bound, 0.999) << name << ' ' << degrees;
+      }
+    }
+  }
+}
+
+TEST(LipschitzBound, OfBlendsHoldsForGradientsOfAnyLength) {
+  Random r(17);
+  for (int i = 0; i < laws::effort(400); ++i) {
+    const auto plane = [&] {
+      return constant(r.uniform(-2, 2)) * x + constant(r.uniform(-2, 2)) * y +
+             constant(r.uniform(-2, 2)) * z + constant(r.uniform(-0.2, 0.2));
+    };
+    const char* names[] = {"sardf", "sardf_c1", "smooth", "min_max"};
+    const std::string name = r.one_of(names);
+    const std::vector<Value> radius{r.uniform(0.1, 1)};
+    const BlendPointer blend = make_blend(name, name == "min_max" ? std::vector<Value>{} : radius);
+    const OperationPointer of[] = {blend->intersection, blend->unite, blend->difference};
+    const Evaluator f(call(of[r.below(3)], {plane(), plane()}));
+    const BoundingBox box{{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}};
+    const double bound = lipschitz_bound(f, box, 8);
+    for (int k = 0; k < 300; ++k) {
+      const Vec3 at{r.uniform(-0.5, 0.5), r.uniform(-0.5, 0.5), r.uniform(-0.5, 0.5)};
+      Vec3 gradient;
+      f.gradients(at.data(), 1, nullptr, gradient.data());
+      EXPECT_LE(norm(gradient), bound * (1 + 1e-9)) << f.value(at);
+    }
+  }
+}
+
+// Two profiles of slope 1 whose values differ by up to 1 over a height of 2: the sides' slope is
+// sqrt(1 + 1/4), and where sections meet it is no more.
+TEST(LipschitzBound, OfALoftIsThatOfItsSteepestPart) {
+  const auto disc = [](double radius) { return make_field("disc", {Vec2{}, radius}); };
+  const Field loft =
+      make_field("loft", {std::vector<PlaneSection>{{disc(3), -2}, {disc(2), 0}, {disc(2.5), 2}},
+                          std::string("linear")});
+  const BoundingBox around{{1, 1, -1.9}, {3, 3, 1.9}};
+  const double truth = std::sqrt(1.25);
+  const double bound = lipschitz_bound(Evaluator(loft.expression()), around, 4000);
+  EXPECT_GE(bound, truth * 0.999);
+  EXPECT_LE(bound, truth * 1.02);
+}
+
+// Biswas and Shapiro's joint distance is no steeper than the distances that it joins.
+TEST(LipschitzBound, OfREquivalenceIsOne) {
+  std::vector<Field> points;
+  for (const Vec3& at : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 2, 0}}) {
+    points.push_back(make_field("point", {at}));
+  }
+  for (const double order : {0.5, 1.0, 12.0}) {
+    const Field joined = make_field("r_equivalence", {points, order});
+    const double bound = lipschitz_bound(Evaluator(joined.expression()), {{-1, -1, -1}, {3, 3, 1}});
+    EXPECT_LE(bound, 1 + 1e-9) << order;
+  }
+}
+
+TEST(BandLipschitzBound, CountsOnlyWhatIsNearTheSurface) {
+  // |grad (r² - 1)| = 2 r, and r² is at most 1.21 where the value is at most 0.21.
+  const Expression ball = x * x + y * y + z * z - constant(1);
+  const BoundingBox box{{0.1, 0.1, 0.1}, {3, 3, 3}};
+  const auto bound = band_lipschitz_bound(Evaluator(ball), box, 0.21, {20'000});
+  ASSERT_TRUE(bound.has_value());
+  EXPECT_GE(*bound, 2.2 * 0.999);
+  EXPECT_LE(*bound, 2.2 * 1.05);
+  EXPECT_FALSE(
+      band_lipschitz_bound(Evaluator(ball), {{2, 2, 2}, {3, 3, 3}}, 0.21, {10}).has_value());
 }
 
 TEST(LipschitzBound, HoldsOnRandomFields) {

@@ -119,6 +119,62 @@ TEST(PovrayPieces, AreShorterThanTheWhole) {
   EXPECT_LT(instructions / double(pieces.size()), 0.5 * double(whole));
 }
 
+TEST(PovrayPieces, AreShorterStillWhereOnlySignsCount) {
+  const Expression solid = plate_of_many_holes();
+  auto options = options_for(1.2);
+  const auto mean_size = [](const std::vector<Piece>& pieces) {
+    double instructions = 0;
+    for (const Piece& piece : pieces) {
+      instructions += double(Evaluator(piece.solid).tape().instructions().size());
+    }
+    return instructions / double(pieces.size());
+  };
+  const double exact = mean_size(povray::pieces_of(solid, bounds, options));
+  options.exact_within = 0.01;
+  const std::vector<Piece> pieces = povray::pieces_of(solid, bounds, options);
+  EXPECT_LT(mean_size(pieces), 0.95 * exact);
+  const Evaluator whole(solid);
+  std::mt19937 random(9);
+  int near = 0;
+  for (const Piece& piece : pieces) {
+    const Evaluator shorter(piece.solid);
+    const auto cut_off = [&](const Vec3& p) {
+      return std::clamp(shorter.value(p), -piece.band, piece.band);
+    };
+    const auto exact_values = [](double a) { return std::clamp(a, -0.01, 0.01); };
+    for (int k = 0; k < 3000; ++k) {
+      const Vec3 a = random_point(random, piece.box);
+      const Vec3 b = a + 0.01 * (random_point(random, piece.box) - a);
+      ASSERT_EQ(exact_values(shorter.value(a)), exact_values(whole.value(a)));
+      ASSERT_LE(std::abs(cut_off(a) - cut_off(b)), piece.gradient * norm(a - b) * (1 + 1e-9));
+      near += std::abs(whole.value(a)) < 0.01;
+    }
+  }
+  EXPECT_GT(near, 100);
+}
+
+// Of a rounded plate with holes the gradient is at most 1 near the surface; where rounded edges
+// meet holes, a little more.
+TEST(PovrayPieces, BoundsAreNearTheSteepestGradient) {
+  for (const Expression& solid : {plate_of_many_holes(), quadratic_ball()}) {
+    const Evaluator whole(solid);
+    std::mt19937 random(10);
+    double bound = 0, steepest = 0;
+    for (const Piece& piece : povray::pieces_of(solid, bounds, options_for(1e9))) {
+      bound = std::max(bound, piece.gradient);
+      for (int k = 0; k < 4000; ++k) {
+        const Vec3 p = random_point(random, piece.box);
+        Vec3 gradient;
+        double value = 0;
+        whole.gradients(p.data(), 1, &value, gradient.data());
+        if (std::abs(value) <= piece.band) steepest = std::max(steepest, norm(gradient));
+      }
+    }
+    EXPECT_LE(bound, 1.15 * steepest);
+    EXPECT_GE(bound, steepest);
+  }
+}
+
 TEST(PovrayPieces, NoGradientOfTheCutOffValuesExceedsTheBound) {
   for (const Expression& solid : {plate_of_many_holes(), quadratic_ball()}) {
     const Evaluator whole(solid);

@@ -47,6 +47,8 @@ template <class T>
 void expect_same(const Evaluator& full, const Shortening& shortening, const std::vector<T>& at) {
   const Sampled<T> a = sampled(full, at), b = sampled(shortening.shortened(), at);
   const Sampled<T> signs = sampled(shortening.shortened(Wanted::signs), at);
+  const Sampled<T> middle = sampled(shortening.shortened(Demand{-0.25, 0.5}), at);
+  const auto demanded = [](T value) { return std::clamp(value, T(-0.25), T(0.5)); };
   for (size_t i = 0; i < points; ++i) {
     const auto where = [&] {
       return testing::Message() << (sizeof(T) == 4 ? "float " : "double ") << at[3 * i] << " "
@@ -55,6 +57,8 @@ void expect_same(const Evaluator& full, const Shortening& shortening, const std:
     EXPECT_TRUE(same(a.value[i], b.value[i])) << a.value[i] << " " << b.value[i] << where();
     EXPECT_TRUE(same(a.value[i], b.again[i])) << where();
     EXPECT_EQ(a.value[i] >= 0, signs.value[i] >= 0) << where();
+    EXPECT_TRUE(equal(demanded(a.value[i]), demanded(middle.value[i])))
+        << a.value[i] << " " << middle.value[i] << where();
     for (size_t k = 3 * i; k < 3 * i + 3; ++k) {
       EXPECT_TRUE(equal_slopes(a.gradient[k], b.gradient[k]))
           << a.gradient[k] << " " << b.gradient[k] << where();
@@ -216,6 +220,52 @@ TEST(ShortenedProgram, KeepsOnlyWhatMatters) {
   // Of a sign nothing is left where it is certain.
   EXPECT_EQ(steps(shortened(max(x, b), Wanted::signs)), 1u);
   EXPECT_EQ(steps(shortened(min(x, a + constant(1)), Wanted::signs)), 0u);
+  // What lies below the floor is as good as the floor.
+  const Expression low = a - constant(2), lowest = sardf::length(z, y) - constant(3);
+  const Shortening of_both(Evaluator(max(low, lowest)), box);
+  EXPECT_EQ(steps(of_both.shortened(Demand{-1, 1})), 2u);
+  EXPECT_EQ(steps(of_both.shortened(Demand{-2, 1})), 5u);
+}
+
+// A gear: many edges, of which few matter in a small box.
+Expression gear(int teeth) {
+  std::vector<Vec2> corners;
+  for (int i = 0; i < 4 * teeth; ++i) {
+    const double angle = 2 * std::acos(-1) * (i + 0.2 * (i % 2)) / (4 * teeth);
+    const double radius = i % 4 < 2 ? 2 : 1.5;
+    corners.push_back({radius * std::cos(angle), radius * std::sin(angle)});
+  }
+  return make_field("polygon", {corners}).expression();
+}
+
+TEST(ShortenedProgram, OfAPolygonHasTheSameBits) {
+  Random r(64);
+  const Evaluator full(gear(7));
+  for (int i = 0; i < laws::effort(2000) && !testing::Test::HasFailure(); ++i) {
+    BoundingBox box;
+    const double half = r.decades(-4, 0.3), angle = r.uniform(-4, 4);
+    const double radius = r.chance(0.7) ? r.uniform(1.4, 2.1) : r.uniform(0, 4);
+    box.lo = {radius * std::cos(angle) - half, radius * std::sin(angle) - half, -1};
+    box.hi = {box.lo[0] + 2 * half, box.lo[1] + 2 * half * r.uniform(0, 1), 1};
+    expect_same_in(r, full, box);
+    // And what is shortened again.
+    const BoundingBox part{box.lo, 0.5 * (box.lo + box.hi)};
+    expect_same_in(r, Shortening(full, box).shortened(), part);
+  }
+}
+
+TEST(ShortenedProgram, OfAPolygonHasFewEdges) {
+  const Evaluator full(gear(7));
+  const BoundingBox box{{1.9, -0.05, 0}, {2, 0.05, 0}};
+  const Evaluator shorter = Shortening(full, box).shortened();
+  const auto edges = [](const Evaluator& evaluator) {
+    Trace trace(2);
+    evaluator.tape().instructions()[0].operation->record(trace);
+    return trace.steps().size();
+  };
+  EXPECT_LT(6 * edges(shorter), edges(full));
+  EXPECT_NE(full.tape().instructions()[0].operation->numbers(),
+            shorter.tape().instructions()[0].operation->numbers());
 }
 
 // The first argument of a minimum is not taken where it is no number.

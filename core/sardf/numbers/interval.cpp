@@ -28,7 +28,11 @@ bool reaches(Interval a, double offset, double period) {
 Interval operator*(Interval a, Interval b) {
   const double p = product(a.lo, b.lo), q = product(a.lo, b.hi);
   const double r = product(a.hi, b.lo), s = product(a.hi, b.hi);
-  return {rounded_down(min(min(p, q), min(r, s))), rounded_up(max(max(p, q), max(r, s)))};
+  Interval all{rounded_down(min(min(p, q), min(r, s))), rounded_up(max(max(p, q), max(r, s)))};
+  // Rounding does not reach beyond 0 where the signs are known, as for a sum (interval.hpp).
+  if ((a.lo >= 0 && b.lo >= 0) || (a.hi <= 0 && b.hi <= 0)) all.lo = max(all.lo, 0.0);
+  if ((a.lo >= 0 && b.hi <= 0) || (a.hi <= 0 && b.lo >= 0)) all.hi = min(all.hi, 0.0);
+  return all;
 }
 
 Interval operator/(Interval a, Interval b) {
@@ -48,7 +52,7 @@ Interval abs(Interval a) {
 
 Interval square(Interval a) {
   const Interval m = abs(a);
-  return {max(0.0, rounded_down(m.lo * m.lo)), rounded_up(m.hi * m.hi)};
+  return {max(0.0, rounded_down(m.lo * m.lo)), m.hi == 0 ? 0 : rounded_up(m.hi * m.hi)};
 }
 
 Interval cosine(Interval a, Interval b) {
@@ -58,7 +62,8 @@ Interval cosine(Interval a, Interval b) {
 }
 
 Interval sqrt(Interval a) {
-  return {max(0.0, rounded_down(std::sqrt(max(0.0, a.lo)))), rounded_up(std::sqrt(max(0.0, a.hi)))};
+  if (a.hi <= 0) return 0;
+  return {max(0.0, rounded_down(std::sqrt(max(0.0, a.lo)))), rounded_up(std::sqrt(a.hi))};
 }
 
 Interval exp(Interval a) {

@@ -26,7 +26,7 @@ constexpr double calls_per_box = 4;
 // What of the time a split has to save to be worth the text.
 constexpr double worthwhile = 0.97;
 // Boxes for the bounds of the gradient: of all pieces, and of each.
-constexpr int all_boxes = 60'000, fewest_boxes = 500, most_boxes = 20'000;
+constexpr int all_boxes = 120'000, fewest_boxes = 500, most_boxes = 20'000;
 // Values beyond this share of a piece's diagonal are cut off where that makes the bound so much
 // smaller that it outweighs the longer steps.
 constexpr double band_share = 0.05;
@@ -238,6 +238,7 @@ bool bound_gradient(Piece& piece, BoundEffort effort) {
   const auto near = band_lipschitz_bound(bounded, piece.box, band, effort);
   if (!near) return false;
   effort.enough = steeper_off_surface * *near;
+  effort.boxes /= 4;
   piece.gradient = *band_lipschitz_bound(bounded, piece.box, infinity, effort);
   if (piece.gradient > effort.enough) {
     piece.gradient = *near;

@@ -177,10 +177,9 @@ TEST(LipschitzBound, OfBlendsHoldsForGradientsOfAnyLength) {
       return constant(r.uniform(-2, 2)) * x + constant(r.uniform(-2, 2)) * y +
              constant(r.uniform(-2, 2)) * z + constant(r.uniform(-0.2, 0.2));
     };
-    const char* names[] = {"sardf", "sardf_c1", "smooth", "min_max"};
-    const std::string name = r.one_of(names);
-    const std::vector<Value> radius{r.uniform(0.1, 1)};
-    const BlendPointer blend = make_blend(name, name == "min_max" ? std::vector<Value>{} : radius);
+    const char* names[] = {"sardf", "sardf_c1", "smooth"};
+    const BlendPointer blend =
+        r.chance(0.2) ? min_max_blend() : make_blend(r.one_of(names), {r.decades(-1, 0.5)});
     const OperationPointer of[] = {blend->intersection, blend->unite, blend->difference};
     const Evaluator f(call(of[r.below(3)], {plane(), plane()}));
     const BoundingBox box{{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}};
@@ -205,7 +204,7 @@ TEST(LipschitzBound, OfALoftIsThatOfItsSteepestPart) {
   const double truth = std::sqrt(1.25);
   const double bound = lipschitz_bound(Evaluator(loft.expression()), around, 4000);
   EXPECT_GE(bound, truth * 0.999);
-  EXPECT_LE(bound, truth * 1.02);
+  EXPECT_LE(bound, truth * 1.15);
 }
 
 // Biswas and Shapiro's joint distance is no steeper than the distances that it joins.

@@ -222,7 +222,8 @@ TEST(ShortenedProgram, KeepsOnlyWhatMatters) {
   EXPECT_EQ(steps(shortened(min(x, a + constant(1)), Wanted::signs)), 0u);
   // What lies below the floor is as good as the floor.
   const Expression low = a - constant(2), lowest = sardf::length(z, y) - constant(3);
-  const Shortening of_both(Evaluator(max(low, lowest)), box);
+  const Evaluator both(max(low, lowest));
+  const Shortening of_both(both, box);
   EXPECT_EQ(steps(of_both.shortened(Demand{-1, 1})), 2u);
   EXPECT_EQ(steps(of_both.shortened(Demand{-2, 1})), 5u);
 }

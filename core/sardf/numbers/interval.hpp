@@ -55,8 +55,8 @@ struct Interval {
   // A sum of doubles that is 0 is exact. The smallest numbers in its place would be right, too, but
   // processors multiply them a hundred times slower.
   friend Interval operator+(Interval a, Interval b) {
-    const double lo = a.lo + b.lo, hi = a.hi + b.hi;
-    return {lo == 0 ? 0 : rounded_down(lo), hi == 0 ? 0 : rounded_up(hi)};
+    const double low = a.lo + b.lo, high = a.hi + b.hi;
+    return {low == 0 ? 0 : rounded_down(low), high == 0 ? 0 : rounded_up(high)};
   }
   friend Interval operator-(Interval a) { return {-a.hi, -a.lo}; }
   friend Interval operator-(Interval a, Interval b) { return a + -b; }

@@ -1,13 +1,12 @@
 #include "sardf/atlas.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <mutex>
 #include <string>
 
 #include "sardf/atlas_stages.hpp"
 #include "sardf/error.hpp"
+#include "sardf/pulse.hpp"
 
 namespace sardf {
 namespace {
@@ -21,30 +20,6 @@ constexpr int most_splits = 4;
 constexpr double expected_use = 0.5;
 /// Two texels for the bilinear lookups from both sides and one for rounding.
 constexpr double thin_gutter = 3;
-
-/// Hands progress out to many threads, one call at a time.
-class Reporter {
- public:
-  explicit Reporter(const Progress& progress) : progress_(progress) {}
-  void stage(double share) {
-    share_ = share;
-    (*this)();
-  }
-  void operator()() {
-    if (!progress_) return;
-    const std::lock_guard lock(mutex_);
-    if (cancelled_ || !progress_(share_)) {
-      cancelled_ = true;
-      throw Cancelled();
-    }
-  }
-
- private:
-  const Progress& progress_;
-  std::mutex mutex_;
-  std::atomic<double> share_{0};
-  bool cancelled_ = false;
-};
 
 /// The charts' triangles in the plane; charts in order of their first face.
 std::vector<std::vector<Vec2>> outline(const Mesh& mesh, const atlas::Layout& layout,
@@ -75,17 +50,17 @@ double area_of(const atlas::Surface& surface) {
   return area;
 }
 
-atlas::Layout lay_out(const atlas::Surface& surface, int size, int gutter, Reporter& reporter) {
-  const std::function<void()> report = [&reporter] { reporter(); };
+atlas::Layout lay_out(const atlas::Surface& surface, int size, int gutter, Pulse& pulse) {
+  const atlas::Report report = [&pulse] { pulse(0); };
   const double unit = std::sqrt(area_of(surface) / expected_use) / size;
   const double gap = gutter * unit, thin_gap = std::min(gap, thin_gutter * unit);
-  reporter.stage(0.05);
+  pulse.stage(0.15);
   const std::vector<uint32_t> patches = atlas::cut_patches(surface, report);
-  reporter.stage(0.15);
+  pulse.stage(0.3);
   atlas::Layout layout = atlas::flatten_patches(surface, patches, thin_gap, report);
-  reporter.stage(0.3);
+  pulse.stage(0.65);
   atlas::sew_charts(surface, layout, gap, thin_gap, chart_limit, report);
-  reporter.stage(0.65);
+  pulse.stage(0.7);
   atlas::polish(surface, layout, thin_gap, report);
   return layout;
 }
@@ -108,28 +83,27 @@ struct Packed {
   atlas::Packing packing;
 };
 
-Packed pack(const Mesh& mesh, const atlas::Layout& layout, int size, int gutter,
-            Reporter& reporter) {
+Packed pack(const Mesh& mesh, const atlas::Layout& layout, int size, int gutter, Pulse& pulse) {
   Packed packed{list_charts(layout), {}};
   packed.packing =
-      atlas::pack(outline(mesh, layout, packed.charts), size, gutter, [&reporter] { reporter(); });
+      atlas::pack(outline(mesh, layout, packed.charts), size, gutter, [&pulse] { pulse(0); });
   return packed;
 }
 
 /// Packs the layout; halves its largest charts while they leave too much of the image unused, as a
 /// few large rings and discs do.
 Packed pack_well(const atlas::Surface& surface, atlas::Layout& layout, int size, int gutter,
-                 Reporter& reporter) {
+                 Pulse& pulse) {
   const double area = area_of(surface), texels = static_cast<double>(size) * size;
   const auto use = [&](const Packed& packed) {
     return packed.packing.scale * packed.packing.scale * area / texels;
   };
-  Packed best = pack(*surface.mesh, layout, size, gutter, reporter);
+  Packed best = pack(*surface.mesh, layout, size, gutter, pulse);
   atlas::Layout trial = layout;
   for (int i = 0; i < most_splits && use(best) < wanted_use; ++i) {
-    const size_t charts = atlas::halve_largest(surface, trial, chart_limit);
+    const size_t charts = atlas::halve_largest(surface, trial, chart_limit, [&pulse] { pulse(0); });
     if (charts == 0) break;
-    Packed packed = pack(*surface.mesh, trial, size, gutter, reporter);
+    Packed packed = pack(*surface.mesh, trial, size, gutter, pulse);
     if (use(packed) <= use(best)) continue;
     best = std::move(packed);
     layout = trial;
@@ -159,13 +133,13 @@ void place(const Packed& packed, atlas::Layout& layout) {
 
 Atlas make_atlas(Mesh& mesh, int size, int gutter, const Progress& progress) {
   check(size, gutter);
-  Reporter reporter(progress);
-  reporter.stage(0);
+  Pulse pulse(progress);
+  pulse.stage(0.05);
+  pulse(0);
   const atlas::Surface surface = atlas::build_surface(mesh);
-  atlas::Layout layout = lay_out(surface, size, gutter, reporter);
-  reporter.stage(0.7);
-  Packed packed = pack_well(surface, layout, size, gutter, reporter);
-  reporter.stage(0.95);
+  atlas::Layout layout = lay_out(surface, size, gutter, pulse);
+  pulse.stage(0.95);
+  Packed packed = pack_well(surface, layout, size, gutter, pulse);
   place(packed, layout);
   Atlas result;
   result.size = size;

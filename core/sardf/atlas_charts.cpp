@@ -41,8 +41,8 @@ void unfold(const Surface& surface, uint32_t face, Layout& layout) {
       surface.vertex(h + 2) == surface.vertex(h + 3) ? Vec2{0, length} : beside(ad, -1);
 }
 
-bool flatten(const Surface& surface, const std::vector<uint32_t>& faces, double gap,
-             Layout& layout) {
+bool flatten(const Surface& surface, const std::vector<uint32_t>& faces, double gap, Layout& layout,
+             const Report& report) {
   sew_within(surface, faces, layout);
   if (faces.size() == 1) {
     unfold(surface, faces[0], layout);
@@ -52,20 +52,20 @@ bool flatten(const Surface& surface, const std::vector<uint32_t>& faces, double 
   ChartMesh chart = build_chart(surface, layout, faces);
   const Quality quality = measure(chart);
   const bool flat = quality.folded == 0 && quality.stretch_high < nearly_flat;
-  relax(chart, flat ? 0 : patch_iterations);
+  relax(chart, flat ? 0 : patch_iterations, report);
   return measure(chart).stretch_high < patch_stretch &&
-         store_embedded(surface, faces, gap, chart, layout);
+         store_embedded(surface, faces, gap, chart, layout, report);
 }
 
 }  // namespace
 
 bool store_embedded(const Surface& surface, const std::vector<uint32_t>& faces, double gap,
-                    ChartMesh& chart, Layout& layout) {
+                    ChartMesh& chart, Layout& layout, const Report& report) {
   if (measure(chart).folded > 0) return false;
   store_chart(chart, faces, layout);
   if (is_embedded(surface, layout, faces, gap)) return true;
   if (!remove_crossings(chart) || measure(chart).folded > 0) return false;
-  relax(chart, 0);
+  relax(chart, 0, report);
   store_chart(chart, faces, layout);
   return is_embedded(surface, layout, faces, gap);
 }
@@ -116,7 +116,7 @@ std::vector<std::vector<uint32_t>> halve(const Surface& surface, const Layout& l
 }
 
 Layout flatten_patches(const Surface& surface, const std::vector<uint32_t>& patch_of_face,
-                       double gap, const std::function<void()>& report) {
+                       double gap, const Report& report) {
   const size_t count = surface.face_count();
   Layout layout{std::vector<uint32_t>(count),
                 {},
@@ -133,7 +133,7 @@ Layout flatten_patches(const Surface& surface, const std::vector<uint32_t>& patc
       report();
       const std::vector<uint32_t> faces = std::move(waiting.back());
       waiting.pop_back();
-      if (flatten(surface, faces, gap, layout)) {
+      if (flatten(surface, faces, gap, layout, report)) {
         charts[p].push_back(faces);
       } else {
         project(surface, faces, layout);
@@ -150,8 +150,7 @@ Layout flatten_patches(const Surface& surface, const std::vector<uint32_t>& patc
   return layout;
 }
 
-void polish(const Surface& surface, Layout& layout, double gap,
-            const std::function<void()>& report) {
+void polish(const Surface& surface, Layout& layout, double gap, const Report& report) {
   tbb::parallel_for(size_t{0}, layout.faces.size(), [&](size_t c) {
     const std::vector<uint32_t>& faces = layout.faces[c];
     if (faces.empty()) return;
@@ -160,14 +159,15 @@ void polish(const Surface& surface, Layout& layout, double gap,
     const Quality before = measure(chart);
     if (before.stretch_high < 1.01) return;
     const ChartMesh old = chart;
-    relax(chart, final_iterations);
+    relax(chart, final_iterations, report);
     const Quality quality = measure(chart);
     if (quality.stretch_mean > before.stretch_mean) return;
-    if (!store_embedded(surface, faces, gap, chart, layout)) store_chart(old, faces, layout);
+    if (!store_embedded(surface, faces, gap, chart, layout, report))
+      store_chart(old, faces, layout);
   });
 }
 
-size_t halve_largest(const Surface& surface, Layout& layout, size_t limit) {
+size_t halve_largest(const Surface& surface, Layout& layout, size_t limit, const Report& report) {
   std::vector<std::pair<double, size_t>> charts;
   for (size_t c = 0; c < layout.faces.size(); ++c) {
     if (layout.faces[c].empty()) continue;
@@ -196,7 +196,7 @@ size_t halve_largest(const Surface& surface, Layout& layout, size_t limit) {
   // A half of a stretched chart has a scale of its own.
   for (size_t c = old_count; c < layout.faces.size(); ++c) {
     ChartMesh chart = build_chart(surface, layout, layout.faces[c]);
-    relax(chart, 0);
+    relax(chart, 0, report);
     store_chart(chart, layout.faces[c], layout);
   }
   return count > before ? count : 0;

@@ -196,12 +196,13 @@ void project(const Surface& surface, const std::vector<uint32_t>& faces, Layout&
     }
 }
 
-void relax(ChartMesh& chart, int iterations) {
+void relax(ChartMesh& chart, int iterations, const Report& report) {
   if (chart.triangles.empty()) return;
   if (iterations > 0) {
     const Eigen::SimplicialLDLT<Matrix> solver(stiffness(chart));
     const Vec2 held = chart.flat[0];
     for (int i = 0; solver.info() == Eigen::Success; ++i) {
+      report();
       Eigen::MatrixX2d target = rotated_edges(chart, i == 0);
       target.row(0) += Eigen::RowVector2d(held[0], held[1]);
       const Eigen::MatrixX2d moved = solver.solve(target);

@@ -125,7 +125,7 @@ Placement placement_of(const Piece& piece, const Bitmap& bitmap, int quarter_tur
 
 /// Places every piece at the given scale, or returns an empty list.
 std::vector<Placement> place_all(const std::vector<Piece>& pieces, double scale, const Sizes& sizes,
-                                 const std::function<void()>& report) {
+                                 const Report& report) {
   Sheet sheet(sizes.side, static_cast<int>(std::ceil(sizes.gutter)) + 1);
   std::vector<Placement> placements;
   for (const Piece& piece : pieces) {
@@ -165,7 +165,7 @@ double area_of(const std::vector<Vec2>& triangles) {
 }  // namespace
 
 Packing pack(const std::vector<std::vector<Vec2>>& charts, int size, int gutter,
-             const std::function<void()>& report) {
+             const Report& report) {
   std::vector<Piece> pieces;
   double area = 0;
   for (const auto& chart : charts) {

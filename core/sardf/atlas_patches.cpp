@@ -17,6 +17,7 @@ constexpr double grow_cosine = 0.62;  // 52 degrees while growing
 constexpr double keep_cosine = 0.34;  // 70 degrees after the patches have settled
 constexpr double compactness = 0.15;
 constexpr int rounds = 4;
+constexpr size_t faces_per_report = 4096;
 constexpr int smoothing_passes = 3;
 constexpr int averaging_passes = 8;
 
@@ -74,14 +75,15 @@ std::vector<uint32_t> flattest_first(const Surface& surface) {
 
 /// Grows new patches over all faces without one, each until its normals have turned too far.
 void grow(const Surface& surface, const std::vector<uint32_t>& order,
-          std::vector<uint32_t>& patch_of_face, uint32_t& patch_count) {
+          std::vector<uint32_t>& patch_of_face, uint32_t& patch_count, const Report& report) {
   for (const uint32_t start : order) {
     if (patch_of_face[start] != none) continue;
     const uint32_t patch = patch_count++;
     const Vec3& normal = surface.normal[start];
     Queue queue;
     queue.push({0, start, patch});
-    while (!queue.empty()) {
+    for (size_t popped = 0; !queue.empty(); ++popped) {
+      if (popped % faces_per_report == 0) report();
       const uint32_t face = queue.top().face;
       queue.pop();
       if (patch_of_face[face] != none) continue;
@@ -135,12 +137,13 @@ std::vector<Patch> describe(const Surface& surface, const std::vector<uint32_t>&
 }
 
 void flood(const Surface& surface, const std::vector<Patch>& patches,
-           std::vector<uint32_t>& patch_of_face) {
+           std::vector<uint32_t>& patch_of_face, const Report& report) {
   Queue queue;
   std::fill(patch_of_face.begin(), patch_of_face.end(), none);
   for (uint32_t p = 0; p < patches.size(); ++p)
     if (patches[p].seed != none) queue.push({0, patches[p].seed, p});
-  while (!queue.empty()) {
+  for (size_t popped = 0; !queue.empty(); ++popped) {
+    if (popped % faces_per_report == 0) report();
     const auto [value, face, p] = queue.top();
     queue.pop();
     if (patch_of_face[face] != none) continue;
@@ -170,15 +173,14 @@ void smooth(const Surface& surface, const std::vector<Patch>& patches,
 
 }  // namespace
 
-std::vector<uint32_t> cut_patches(const Surface& surface, const std::function<void()>& report) {
+std::vector<uint32_t> cut_patches(const Surface& surface, const Report& report) {
   std::vector<uint32_t> patch_of_face(surface.face_count(), none);
   const std::vector<uint32_t> order = flattest_first(surface);
   uint32_t count = 0;
-  grow(surface, order, patch_of_face, count);
+  grow(surface, order, patch_of_face, count, report);
   for (int round = 0; round < rounds; ++round) {
-    report();
-    flood(surface, describe(surface, patch_of_face, count), patch_of_face);
-    grow(surface, order, patch_of_face, count);
+    flood(surface, describe(surface, patch_of_face, count), patch_of_face, report);
+    grow(surface, order, patch_of_face, count, report);
   }
   smooth(surface, describe(surface, patch_of_face, count), patch_of_face);
   return patch_of_face;

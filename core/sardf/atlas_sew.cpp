@@ -45,7 +45,7 @@ struct Cluster {
 
 class Tailor {
  public:
-  Tailor(const Surface& surface, Layout& layout, const std::function<void()>& report)
+  Tailor(const Surface& surface, Layout& layout, const Report& report)
       : surface_(surface), layout_(layout), report_(report) {}
 
   /// Joins what it can once; returns the number of charts that vanished.
@@ -75,7 +75,7 @@ class Tailor {
 
   const Surface& surface_;
   Layout& layout_;
-  const std::function<void()>& report_;
+  const Report& report_;
   std::map<Pair, std::vector<uint32_t>> shared_;  // half-edges on the first chart's side
   std::vector<double> area_, perimeter_;
   std::vector<std::vector<BoundarySample>> samples_;
@@ -235,13 +235,14 @@ bool Tailor::join(const Cluster& cluster, const Level& level, double gap,
   ChartMesh chart = build_chart(surface_, layout_, faces);
   Quality quality = measure(chart);
   if (quality.folded > 0 || quality.stretch_high > 1.005) {
-    relax(chart, sew_iterations);
+    relax(chart, sew_iterations, report_);
     quality = measure(chart);
   }
   double smallest = area_[cluster.charts[0]];
   for (const uint32_t c : cluster.charts) smallest = std::min(smallest, area_[c]);
   const double limit = is_crumb(smallest, gap) ? crumb_stretch : level.stretch;
-  if (quality.stretch_high <= limit && store_embedded(surface_, faces, gap, chart, layout_))
+  if (quality.stretch_high <= limit &&
+      store_embedded(surface_, faces, gap, chart, layout_, report_))
     return true;
   for (const uint32_t h : cluster.sewn) layout_.sewn[h] = layout_.sewn[surface_.twin[h]] = 0;
   for (size_t i = 0; i < before.size(); ++i) layout_.flat[4 * faces[i / 4] + i % 4] = before[i];
@@ -291,7 +292,7 @@ size_t count_charts(const Layout& layout) {
 }  // namespace
 
 void sew_charts(const Surface& surface, Layout& layout, double gap, double thin_gap, size_t target,
-                const std::function<void()>& report) {
+                const Report& report) {
   Tailor tailor(surface, layout, report);
   for (const Level& level : levels) {
     if (!level.always && count_charts(layout) <= target) break;

@@ -18,6 +18,9 @@ namespace sardf::atlas {
 
 inline constexpr uint32_t none = 0xFFFFFFFFu;
 
+/// Called within every long loop, from any thread; throws Cancelled.
+using Report = std::function<void()>;
+
 /// Half-edge h = 4 * face + k runs from corner k to the next corner; corners have the same numbers.
 struct Surface {
   const Mesh* mesh;
@@ -40,7 +43,7 @@ Surface build_surface(const Mesh& mesh);
 
 /// Pieces of surface that turn little and never span a crease: for each face its patch.
 /// `report` is called now and then and may throw to cancel.
-std::vector<uint32_t> cut_patches(const Surface& surface, const std::function<void()>& report);
+std::vector<uint32_t> cut_patches(const Surface& surface, const Report& report);
 
 /// The state that flattening and sewing work on. A chart is a set of faces connected through sewn
 /// half-edges; corners that meet through sewn half-edges share their flat position.
@@ -77,7 +80,7 @@ void untangle(ChartMesh& chart);
 bool remove_crossings(ChartMesh& chart);
 /// Moves the chart's vertices so that its triangles keep their shapes as well as they can, and
 /// scales it to its true area.
-void relax(ChartMesh& chart, int iterations);
+void relax(ChartMesh& chart, int iterations, const Report& report);
 
 /// How well a chart lies flat, at its true scale.
 struct Quality {
@@ -124,22 +127,21 @@ std::vector<std::vector<uint32_t>> halve(const Surface& surface, const Layout& l
 /// Stores a relaxed chart in the layout; false when it is folded or not embedded and that is not
 /// to be mended. The layout then holds the chart as it was given or half mended.
 bool store_embedded(const Surface& surface, const std::vector<uint32_t>& faces, double gap,
-                    ChartMesh& chart, Layout& layout);
+                    ChartMesh& chart, Layout& layout, const Report& report);
 /// Flattens every patch, splitting those that do not flatten well.
 Layout flatten_patches(const Surface& surface, const std::vector<uint32_t>& patch_of_face,
-                       double gap, const std::function<void()>& report);
+                       double gap, const Report& report);
 /// Sews neighbouring charts while the result stays flat and apart from itself; down to
 /// `target` charts it takes more stretch. gap: the gutter in scene units.
 void sew_charts(const Surface& surface, Layout& layout, double gap, double thin_gap, size_t target,
-                const std::function<void()>& report);
+                const Report& report);
 
 /// Relaxes all charts once more, longer, where that helps.
-void polish(const Surface& surface, Layout& layout, double gap,
-            const std::function<void()>& report);
+void polish(const Surface& surface, Layout& layout, double gap, const Report& report);
 
 /// Halves the charts larger than half of the largest one, as long as there are no more than `limit`
 /// charts. Returns the number of charts, or 0 when nothing could be halved.
-size_t halve_largest(const Surface& surface, Layout& layout, size_t limit);
+size_t halve_largest(const Surface& surface, Layout& layout, size_t limit, const Report& report);
 
 /// Where one chart lies: texel = scale * rotate(flat) + offset.
 struct Placement {
@@ -153,6 +155,6 @@ struct Packing {
 };
 /// charts: for each chart its triangles in the plane, three points after another.
 Packing pack(const std::vector<std::vector<Vec2>>& charts, int size, int gutter,
-             const std::function<void()>& report);
+             const Report& report);
 
 }  // namespace sardf::atlas

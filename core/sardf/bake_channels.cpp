@@ -43,16 +43,6 @@ bool append_attribute(const Scene& scene, const std::string& name,
   return false;
 }
 
-std::string doc_of_common(const std::string& name) {
-  if (name == "base_color") return "the materials' colours, mixed by the fractions; linear";
-  if (name == "roughness") return "the materials' roughness, 0 to 1";
-  if (name == "metallic") return "how far the materials are metal, 0 to 1";
-  if (name == "emission") return "the light that the materials give off; linear, unbounded";
-  if (name == "fractions") return "the materials' volume fractions as masks, three in an image";
-  if (name == "field") return "the solid's field, positive inside; 0 on the surface";
-  return "the solid's normals in the mesh's tangent space: a normal map";
-}
-
 bool states_density(const Scene& scene) {
   const std::vector<Material>& materials = scene.description().materials;
   return !materials.empty() && std::all_of(materials.begin(), materials.end(),
@@ -91,7 +81,7 @@ std::vector<std::string> channel_names(const Scene& scene) {
 
 std::vector<ChannelInfo> channel_infos(const Scene& scene) {
   std::vector<ChannelInfo> infos;
-  for (const char* name : common_channels) infos.push_back({name, doc_of_common(name)});
+  for (const auto& [name, doc] : common_channels) infos.push_back({name, doc});
   if (has_density(scene)) infos.push_back({density, "the materials' density, mixed; in g/cm³"});
   for (const Attribute& attribute : scene.description().attributes)
     infos.push_back({attribute.name, doc_of(attribute)});

@@ -118,6 +118,8 @@ class Operation {
   virtual double gain(const Interval* in) const = 0;
   /// Whether it is the exact Euclidean distance in its inputs.
   virtual bool is_distance() const = 0;
+  /// Whether it has second derivatives by its inputs wherever it has a value and they are finite.
+  virtual bool is_smooth() const { return false; }
   virtual Join join() const = 0;
 
   /// Whether there is a formula: a field that carries data (data_operation.hpp) has none.

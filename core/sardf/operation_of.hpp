@@ -54,6 +54,8 @@ template <class Op>
 constexpr bool is_monotone = requires { Op::monotone; };
 template <class Op>
 constexpr bool is_exact_distance = requires { Op::distance; };
+template <class Op>
+constexpr bool is_smooth_function = requires { Op::smooth; };
 
 /// Encloses the scalar product of the gradients of two fields.
 Interval scalar_product(const Slope& a, const Slope& b);
@@ -215,6 +217,7 @@ class OperationOf final : public Operation {
     return 0;
   }
   bool is_distance() const override { return is_exact_distance<Op>; }
+  bool is_smooth() const override { return is_smooth_function<Op>; }
   Join join() const override {
     if constexpr (requires { Op::join; }) return Op::join;
     return Join::none;

@@ -13,6 +13,7 @@ struct Function {
 
 struct Add : Function<2> {
   static constexpr const char *name = "add", *doc = "a + b";
+  static constexpr bool smooth = true;
   static constexpr std::array<int, 2> monotone{1, 1};
   static constexpr double rounding = 1;
   template <class T>
@@ -23,6 +24,7 @@ struct Add : Function<2> {
 
 struct Subtract : Function<2> {
   static constexpr const char *name = "subtract", *doc = "a - b";
+  static constexpr bool smooth = true;
   static constexpr std::array<int, 2> monotone{1, -1};
   static constexpr double rounding = 1;
   template <class T>
@@ -33,6 +35,7 @@ struct Subtract : Function<2> {
 
 struct Multiply : Function<2> {
   static constexpr const char *name = "multiply", *doc = "a * b";
+  static constexpr bool smooth = true;
   template <class T>
   T eval(T a, T b) const {
     return a * b;
@@ -41,6 +44,7 @@ struct Multiply : Function<2> {
 
 struct Divide : Function<2> {
   static constexpr const char *name = "divide", *doc = "a / b";
+  static constexpr bool smooth = true;
   template <class T>
   T eval(T a, T b) const {
     return a / b;
@@ -49,6 +53,7 @@ struct Divide : Function<2> {
 
 struct Negate : Function<1> {
   static constexpr const char *name = "negate", *doc = "-a";
+  static constexpr bool smooth = true;
   static constexpr std::array<int, 1> monotone{-1};
   static constexpr double rounding = 0;
   template <class T>
@@ -98,6 +103,7 @@ struct Sign : Function<1> {
 
 struct Square : Function<1> {
   static constexpr const char *name = "square", *doc = "a * a";
+  static constexpr bool smooth = true;
   template <class T>
   T eval(T a) const {
     return square(a);
@@ -150,6 +156,7 @@ struct Clamp : Function<3> {
 
 struct Mix : Function<3> {
   static constexpr const char *name = "mix", *doc = "a + (b - a) * c";
+  static constexpr bool smooth = true;
   template <class T>
   T eval(T a, T b, T c) const {
     return a + (b - a) * c;

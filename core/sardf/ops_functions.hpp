@@ -7,6 +7,7 @@ namespace sardf {
 
 struct SquareRoot : Function<1> {
   static constexpr const char *name = "sqrt", *doc = "the square root of a; 0 for negative a";
+  static constexpr bool smooth = true;
   template <class T>
   T eval(T a) const {
     // The select keeps the derivative at and below 0 from being 0 times infinity.
@@ -64,6 +65,7 @@ struct Power : Function<2> {
 
 struct Exponential : Function<1> {
   static constexpr const char *name = "exp", *doc = "e to the power a";
+  static constexpr bool smooth = true;
   template <class T>
   T eval(T a) const {
     return exp(a);
@@ -72,6 +74,7 @@ struct Exponential : Function<1> {
 
 struct Logarithm : Function<1> {
   static constexpr const char *name = "log", *doc = "the natural logarithm of a";
+  static constexpr bool smooth = true;
   template <class T>
   T eval(T a) const {
     return log(a);
@@ -80,6 +83,7 @@ struct Logarithm : Function<1> {
 
 struct Sine : Function<1> {
   static constexpr const char *name = "sin", *doc = "the sine of a";
+  static constexpr bool smooth = true;
   template <class T>
   T eval(T a) const {
     return sin(a);
@@ -88,6 +92,7 @@ struct Sine : Function<1> {
 
 struct Cosine : Function<1> {
   static constexpr const char *name = "cos", *doc = "the cosine of a";
+  static constexpr bool smooth = true;
   template <class T>
   T eval(T a) const {
     return cos(a);
@@ -96,6 +101,7 @@ struct Cosine : Function<1> {
 
 struct Tangent : Function<1> {
   static constexpr const char *name = "tan", *doc = "the tangent of a";
+  static constexpr bool smooth = true;
   template <class T>
   T eval(T a) const {
     return tan(a);

@@ -63,7 +63,8 @@ void check_materials(SceneDescription& scene) {
 
 bool is_taken_by_channels(const std::string& name) {
   return name.starts_with("fractions_") ||
-         std::find(common_channels.begin(), common_channels.end(), name) != common_channels.end();
+         std::any_of(common_channels.begin(), common_channels.end(),
+                     [&](const CommonChannel& channel) { return channel.name == name; });
 }
 
 void check_parts(SceneDescription& scene) {

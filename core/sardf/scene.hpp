@@ -29,8 +29,18 @@ struct Material {
 
 /// What can be baked of every scene; no attribute has such a name, or one that begins with
 /// "fractions_", the name of an image of three materials.
-inline constexpr std::array<const char*, 7> common_channels{
-    "base_color", "roughness", "metallic", "emission", "fractions", "field", "normal"};
+struct CommonChannel {
+  const char *name, *doc;
+};
+inline constexpr std::array<CommonChannel, 7> common_channels{{
+    {"base_color", "the materials' colours, mixed by the fractions; linear"},
+    {"roughness", "the materials' roughness, 0 to 1"},
+    {"metallic", "how far the materials are metal, 0 to 1"},
+    {"emission", "the light that the materials give off; linear, unbounded"},
+    {"fractions", "the materials' volume fractions as masks, three in an image"},
+    {"field", "the solid's field, positive inside; 0 on the surface"},
+    {"normal", "the solid's normals in the mesh's tangent space: a normal map"},
+}};
 
 /// A scalar (one component) or vector function on the object: a field for each component, or a
 /// rule as for fractions, from which Scene makes the components.

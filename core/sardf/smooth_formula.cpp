@@ -1,7 +1,7 @@
 #include "sardf/smooth_formula.hpp"
 
+#include <algorithm>
 #include <atomic>
-#include <set>
 #include <unordered_map>
 #include <utility>
 
@@ -105,23 +105,14 @@ class SmoothFormula final : public DataOperation {
 
 /// What is known of a node, and what stands for it; null until that is asked for.
 struct Part {
-  bool is_smooth = true, is_linear = true;
+  bool is_smooth = true;
   Expression made;
 };
 
-bool is_smooth_operation(const std::string& name) {
-  static const std::set<std::string> names{"add",    "subtract", "multiply", "divide", "negate",
-                                           "square", "sqrt",     "exp",      "log",    "sin",
-                                           "cos",    "tan",      "mix"};
-  return names.contains(name);
-}
-
-// Whether it is linear in what is not a number, its bounds as good as they can be.
-bool keeps_linear(const Node& node) {
-  const std::string& name = node.operation->info().name;
-  if (name == "add" || name == "subtract" || name == "negate") return true;
-  if (name == "multiply") return is_constant(node.inputs[0]) || is_constant(node.inputs[1]);
-  return name == "divide" && is_constant(node.inputs[1]);
+// Its bounds are as good as they can be.
+bool is_linear(const Expression& f) {
+  const std::array<Expression, 3> by = gradient(f);
+  return std::all_of(by.begin(), by.end(), [](const Expression& d) { return is_constant(d); });
 }
 
 }  // namespace
@@ -131,21 +122,17 @@ Expression with_smooth_bounds(const Expression& expression) {
   const auto finished = [&](const Expression& node) {
     Part& part = parts.at(node.get());
     if (part.made) return part.made;
-    part.made = node;
-    if (!part.is_linear) {
-      part.made = call(std::make_shared<SmoothFormula>(node),
-                       {coordinate(0), coordinate(1), coordinate(2)});
-    }
+    part.made = is_linear(node) ? node
+                                : call(std::make_shared<SmoothFormula>(node),
+                                       {coordinate(0), coordinate(1), coordinate(2)});
     return part.made;
   };
   for (const Node* node : topological_order({&expression, 1})) {
     Part& part = parts[node];
     if (node->type != Node::Type::operation) continue;
-    part.is_smooth = is_smooth_operation(node->operation->info().name);
-    part.is_linear = keeps_linear(*node);
+    part.is_smooth = node->operation->is_smooth();
     for (const Expression& input : node->arguments()) {
       part.is_smooth = part.is_smooth && parts.at(input.get()).is_smooth;
-      part.is_linear = part.is_linear && parts.at(input.get()).is_linear;
     }
     if (part.is_smooth) continue;
     std::vector<Expression> inputs;

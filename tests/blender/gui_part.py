@@ -6,18 +6,27 @@ since Blender 3.4 has no way but a click to choose another.
 """
 
 import sys
-import traceback
 from pathlib import Path
 
 import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import addon_folder
-from gui_window import addon, drive, override, result, screenshot, until, view, wait
+from gui_window import (
+    addon,
+    drawn,
+    drawn_again,
+    drive,
+    override,
+    screenshot,
+    until,
+    view,
+    wait,
+    watch,
+)
 
 ADDON, SCENE = sys.argv[-4:-2]
 LIMIT = 120.0  # seconds for anything at most
-result["drawn"] = {}
 
 
 def watch_panels():
@@ -29,39 +38,8 @@ def watch_panels():
         watch(cls, "draw_item" if issubclass(cls, bpy.types.UIList) else "draw")
 
 
-def watch(cls, name):
-    """Count complete draws, and keep the first error."""
-    original = getattr(cls, name)
-
-    if name == "draw":
-
-        def draw(self, context):
-            counted(cls, lambda: original(self, context))
-
-    else:
-
-        def draw(self, context, layout, data, item, icon, active, prop, index):
-            words = (context, layout, data, item, icon, active, prop, index)
-            counted(cls, lambda: original(self, *words))
-
-    setattr(cls, name, draw)
-
-
-def counted(cls, call):
-    try:
-        call()
-    except Exception:
-        result["errors"].append(traceback.format_exc())
-        raise
-    result["drawn"][cls.__name__] = result["drawn"].get(cls.__name__, 0) + 1
-
-
-def drawn(*names):
-    return all(result["drawn"].get(name, 0) for name in names)
-
-
 def until_drawn(*names):
-    return until(lambda: drawn(*names), f"a draw of {names}", LIMIT)
+    return until(lambda: all(map(drawn, names)), f"a draw of {names}", LIMIT)
 
 
 def scenario():
@@ -87,11 +65,7 @@ def scenario():
         with override():
             bpy.context.view_layer.objects.active = part
             bpy.ops.sardf.primitive_add(kind=kind)
-        before = result["drawn"]["SARDF_PT_part"]
-        area.tag_redraw()
-        yield from until(
-            lambda before=before: result["drawn"]["SARDF_PT_part"] > before, "the panel", LIMIT
-        )
+        yield from drawn_again("SARDF_PT_part", LIMIT)
     with override():
         bpy.ops.wm.call_menu(name="SARDF_MT_add")
     yield from until_drawn("SARDF_MT_add")

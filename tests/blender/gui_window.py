@@ -23,7 +23,7 @@ import addon_folder
 from installing import MODULE
 
 FOLDER, RESULT = sys.argv[-2:]
-result = {"errors": []}
+result = {"errors": [], "drawn": {}}
 
 
 class TimeOut(Exception):
@@ -44,6 +44,46 @@ def until(condition, what, limit):
             screenshot(f"{Path(RESULT).stem}_time_out")
             raise TimeOut(f"waited {limit:.0f} s for {what}")
         yield
+
+
+def watch(cls, name="draw"):
+    """Count, as result["drawn"][class], complete draws of a panel, a menu or (name "draw_item") a
+    list, and keep what is raised there. Blender counts a draw function's arguments."""
+    original = getattr(cls, name)
+
+    if name == "draw":
+
+        def draw(self, context):
+            _counted(cls, lambda: original(self, context))
+
+    else:
+
+        def draw(self, context, layout, data, item, icon, active, prop, index):
+            words = (context, layout, data, item, icon, active, prop, index)
+            _counted(cls, lambda: original(self, *words))
+
+    setattr(cls, name, draw)
+
+
+def _counted(cls, call):
+    try:
+        call()
+    except Exception:
+        result["errors"].append(traceback.format_exc())
+        raise
+    result["drawn"][cls.__name__] = drawn(cls.__name__) + 1
+
+
+def drawn(name):
+    """How often a class that is watched was drawn."""
+    return result["drawn"].get(name, 0)
+
+
+def drawn_again(name, limit):
+    """Wait until a class that is watched was drawn with everything that is in it now."""
+    before = drawn(name)
+    view()[1].tag_redraw()
+    yield from until(lambda: drawn(name) > before, f"{name} to be drawn", limit)
 
 
 def view():

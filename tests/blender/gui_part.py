@@ -13,11 +13,13 @@ import bpy
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import addon_folder
 from gui_window import (
+    RESULT,
     addon,
     drawn,
     drawn_again,
     drive,
     override,
+    result,
     screenshot,
     until,
     view,
@@ -66,11 +68,43 @@ def scenario():
             bpy.context.view_layer.objects.active = part
             bpy.ops.sardf.primitive_add(kind=kind)
         yield from drawn_again("SARDF_PT_part", LIMIT)
+    yield from lives_on()
     with override():
         bpy.ops.wm.call_menu(name="SARDF_MT_add")
     yield from until_drawn("SARDF_MT_add")
     yield from wait(1)
     screenshot("parts")
+
+
+def entries():
+    objects = addon("parts.part_objects")
+    part = objects.outermost(objects.part_of(bpy.context.view_layer.objects.active))
+    return [entry.object.name for entry in part.sardf_part.entries]
+
+
+def lives_on():
+    """How many entries the part has when one is added, undone, redone, saved and opened again; the
+    panel is drawn after each."""
+    with override():
+        bpy.ops.ed.undo_push(message="before the sphere")
+    result["entries"] = [len(entries())]
+    path = str(Path(RESULT).with_suffix(".blend"))
+    for step in (
+        lambda: bpy.ops.sardf.primitive_add(kind="sphere") and bpy.ops.ed.undo_push(message="it"),
+        bpy.ops.ed.undo,
+        bpy.ops.ed.redo,
+        lambda: bpy.ops.wm.save_as_mainfile(filepath=path),
+    ):
+        with override():
+            step()
+        yield from drawn_again("SARDF_PT_part", LIMIT)
+        result["entries"].append(len(entries()))
+    saved = entries()
+    bpy.ops.wm.read_homefile(use_empty=True, load_ui=False)
+    yield
+    bpy.ops.wm.open_mainfile(filepath=path, load_ui=False)
+    yield from drawn_again("SARDF_PT_part", LIMIT)
+    result["reopened"] = entries() == saved
 
 
 bpy.context.preferences.view.show_splash = False

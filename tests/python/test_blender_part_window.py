@@ -24,3 +24,10 @@ def test_panels_and_menu_of_a_part_are_drawn(window):
     # The wireframes: dark lines on the viewport's grey, left of the sidebar and below the header.
     view = screenshot("part_sections")[150:850, 100:760].max(axis=-1)
     assert (view < 40).mean() > 0.005
+
+
+def test_a_part_is_undone_redone_saved_and_opened_again(window):
+    before, added, undone, redone, saved = window["entries"]
+    assert added == redone == saved == before + 1
+    assert undone == before
+    assert window["reopened"]

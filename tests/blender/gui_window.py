@@ -128,11 +128,15 @@ def click(x, y):
 
 
 def open_tab(area, is_drawn, limit):
-    """Open an area's sidebar and click down its column of tabs until ours is shown: Blender 3.4 has
-    no other way to choose one."""
+    """Open an area's sidebar at our tab. Blender 3.4 has no other way to choose one than to click
+    down the column of tabs; a second click on one closes it in Blender 5."""
     area.spaces.active.show_region_ui = True
     sidebar = next(region for region in area.regions if region.type == "UI")
     yield from until(lambda: sidebar.width > 50, "the sidebar to open", limit)
+    if hasattr(sidebar, "active_panel_category"):
+        yield from until(lambda: _chosen(area, sidebar), "our tab to be known", limit)
+        yield from until(is_drawn, "our tab to be drawn", limit)
+        return
     right, top = sidebar.x + sidebar.width, sidebar.y + sidebar.height
     for down in range(30, 500, 25):
         click(right - 10, top - down)
@@ -143,6 +147,16 @@ def open_tab(area, is_drawn, limit):
             return
     screenshot(f"{Path(RESULT).stem}_time_out")
     raise TimeOut("no tab showed the panel")
+
+
+def _chosen(area, sidebar):
+    """Choose our tab, which Blender knows once it has drawn the column of tabs."""
+    area.tag_redraw()
+    try:
+        sidebar.active_panel_category = "sardf"
+    except (AttributeError, TypeError):
+        return False
+    return True
 
 
 def drive(steps, tick):

@@ -12,6 +12,7 @@ arguments sources outputs    their options, what they read, and how files get th
 properties operators panel    the user interface for scene files
 bake_settings bake_plan bake_info bake_operator bake_panel    the bake of scene files and parts
 piece_operator    the bake of the pieces that sections leave
+window progress    what panels and operators, and long work, share
 preferences  where POV-Ray is
 parts        parts modelled from Blender objects
 preview      parts shown in the viewport while they are made

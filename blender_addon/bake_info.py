@@ -13,7 +13,7 @@ from pathlib import Path
 import bpy
 from bpy.app.handlers import persistent
 
-from . import bake_plan, bake_settings, core, properties
+from . import bake_plan, bake_settings, core, properties, window
 from .baked import assemble, groups
 from .baked.measure import Info, Probe, Wish, measure
 from .parts import part_scene, part_status
@@ -157,7 +157,7 @@ def _begin():
         except core.MissingCore as error:
             _remember(shown, wish, Info(error=str(error)))
         _start(_look, TICK)
-    _redraw()
+    window.redraw()
     return None
 
 
@@ -172,20 +172,13 @@ def _look():
     _probe = None
     if info is not None:
         _remember(_shown(bpy.context), wish, info)
-    _redraw()
+    window.redraw()
     return None
 
 
 def _start(timer, seconds):
     if not bpy.app.background and not bpy.app.timers.is_registered(timer):
         bpy.app.timers.register(timer, first_interval=seconds)
-
-
-def _redraw():
-    for window in bpy.context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()
 
 
 @persistent

@@ -7,14 +7,12 @@ from typing import ClassVar
 
 import bpy
 
-from . import bake_info, bake_plan, core
+from . import bake_info, bake_plan, core, window
 from .baked import assemble, clock, exact, job, unwrap
 from .parts import part_bake, part_objects
 
-POLL_SECONDS = 0.05
 
-
-class SARDF_OT_bake(bpy.types.Operator):
+class SARDF_OT_bake(window.Polling, bpy.types.Operator):
     """Mesh and bake in a worker thread while Blender stays usable.
 
     The thread runs job.make_part, writes the textures into a hidden folder and never touches bpy;
@@ -32,8 +30,8 @@ class SARDF_OT_bake(bpy.types.Operator):
     bl_options: ClassVar[set] = {"UNDO"}
 
     job = None  # of the session, not of the file: the running job.Job, or None
-    stage = ""  # one line for panel and status bar
-    timer = None
+    watch = window.Watch()
+    title = "Bake"
 
     @classmethod
     def poll(cls, context):
@@ -67,22 +65,11 @@ class SARDF_OT_bake(bpy.types.Operator):
             request = dataclasses.replace(request, shares=shares)
         self._clock = clock.Clock(None if cost is None else cost.seconds)
         SARDF_OT_bake.job = job.Job(sardf, request)
-        manager = context.window_manager
-        SARDF_OT_bake.timer = manager.event_timer_add(POLL_SECONDS, window=context.window)
-        manager.progress_begin(0, 100)
-        manager.modal_handler_add(self)
+        self.watch.begin(context, self)
         self._show(context)
         return {"RUNNING_MODAL"}
 
-    def modal(self, context, event):
-        if SARDF_OT_bake.job is None:  # the add-on was disabled, and enabled again
-            return {"CANCELLED"}
-        if event.type == "ESC" and event.value == "PRESS":
-            stop(context)
-            self.report({"INFO"}, "Bake cancelled")
-            return {"CANCELLED"}  # the thread ends by itself, within 0.1 s
-        if event.type != "TIMER":
-            return {"PASS_THROUGH"}
+    def poll_work(self, context):
         running = SARDF_OT_bake.job
         try:
             bake_plan.check(self._made)
@@ -108,7 +95,6 @@ class SARDF_OT_bake(bpy.types.Operator):
             return self._fail(error)
 
     def cancel(self, context):
-        """Blender ends the operator itself: another file is loaded, or the window closes."""
         stop(context)
 
     def _plan(self, context):
@@ -166,10 +152,7 @@ class SARDF_OT_bake(bpy.types.Operator):
         text = clock.progress_text(share, self._clock.left(share))
         if running.to_unwrap is not None:
             text = "waits for Object Mode, to unwrap"
-        SARDF_OT_bake.stage = f"Baking {text}"
-        context.window_manager.progress_update(100 * share)
-        context.workspace.status_text_set(f"sardf: baking {clock.bar(share)} {text} (Esc cancels)")
-        redraw(context)
+        self.watch.tell(context, f"Baking {text}", share, f"baking {clock.bar(share)} {text}")
 
     def _warn(self, warnings):
         for text in warnings:
@@ -185,20 +168,7 @@ def stop(context):
     if SARDF_OT_bake.job is not None:
         SARDF_OT_bake.job.cancel()
         SARDF_OT_bake.job = None
-    if SARDF_OT_bake.timer is not None:
-        context.window_manager.event_timer_remove(SARDF_OT_bake.timer)
-        SARDF_OT_bake.timer = None
-        context.window_manager.progress_end()
-        for workspace in bpy.data.workspaces:
-            workspace.status_text_set(None)
-    redraw(context)
-
-
-def redraw(context):
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()
+    SARDF_OT_bake.watch.end(context)
 
 
 def register():
@@ -206,6 +176,5 @@ def register():
 
 
 def unregister():
-    if SARDF_OT_bake.job is not None:
-        stop(bpy.context)
+    stop(bpy.context)
     bpy.utils.unregister_class(SARDF_OT_bake)

@@ -1,15 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The panel "Bake" of the sidebar's tab "sardf": of the active part, or of the scene file."""
 
-import textwrap
-
 import bpy
 
-from . import bake_info, bake_plan, bake_settings
+from . import bake_info, bake_plan, bake_settings, window
 from .bake_operator import SARDF_OT_bake
 from .baked import clock
-
-LINE = 34  # characters that fit into the sidebar at its default width
 
 
 class SARDF_PT_bake(bpy.types.Panel):
@@ -79,14 +75,14 @@ class SARDF_PT_bake(bpy.types.Panel):
             button.channel, button.tip = name, tip
         missing = [name for name in chosen if known and name not in known]
         if missing:
-            _lines(layout, [f"not here: {', '.join(missing)}"])
+            window.lines(layout, [f"not here: {', '.join(missing)}"])
 
     def _draw_cost(self, layout, context, info, measuring):
         if measuring:
             layout.label(text="measuring ...", icon="TIME")
             return
         if info.error:
-            _lines(layout, [info.error], alert=True)
+            window.lines(layout, [info.error], alert=True)
             return
         cost = bake_info.cost(context)
         if cost is not None:
@@ -99,19 +95,11 @@ class SARDF_PT_bake(bpy.types.Panel):
             row.scale_y = 1.5
             row.operator("sardf.bake", icon="TEXTURE")
         elif hasattr(layout, "progress"):  # Blender 4.0 and later
-            text = f"{SARDF_OT_bake.stage} (Esc cancels)"
+            text = f"{SARDF_OT_bake.watch.stage} (Esc cancels)"
             layout.progress(factor=SARDF_OT_bake.job.share, text=text)
         else:
-            layout.label(text=f"{SARDF_OT_bake.stage}", icon="TIME")
+            layout.label(text=SARDF_OT_bake.watch.stage, icon="TIME")
             layout.label(text=f"{clock.bar(SARDF_OT_bake.job.share)} Esc cancels")
-
-
-def _lines(layout, lines, alert=False):
-    column = layout.column(align=True)
-    column.alert = alert
-    for text in lines:
-        for row in textwrap.wrap(text, LINE, break_long_words=True):
-            column.label(text=row)
 
 
 def register():

@@ -13,14 +13,15 @@ from .arguments import FAILED, Stop
 def make_workplace(output):
     """A folder inside `output` where files are written before they get their names.
 
-    Its name holds our process, so that a later run can tell what a killed one left behind.
+    Its name holds our process, so that a later run can tell what a killed one left behind. The path
+    is whole, as Blender wants it for what it saves.
     """
     try:
         Path(output).mkdir(parents=True, exist_ok=True)
         for left in Path(output).glob(".sardf-*-*"):
             if not is_running(left.name.split("-")[1]):
                 shutil.rmtree(left)
-        return Path(tempfile.mkdtemp(prefix=f".sardf-{os.getpid()}-", dir=output))
+        return Path(tempfile.mkdtemp(prefix=f".sardf-{os.getpid()}-", dir=Path(output).resolve()))
     except OSError as error:
         raise Stop(FAILED, f"{output}: cannot be written: {error.strerror}") from error
 

@@ -1,13 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The tab "sardf" in the 3-D viewport's sidebar."""
 
-import textwrap
-
 import bpy
 
-from . import properties
-
-LINE = 28  # characters that fit into the sidebar at its default width
+from . import properties, window
 
 
 class SARDF_PT_main(bpy.types.Panel):
@@ -34,11 +30,8 @@ class SARDF_PT_main(bpy.types.Panel):
         summary = properties.summary(settings)
         if summary is None:
             return
-        column = self.layout.column(align=True)
-        column.alert = bool(summary.error)
-        for text in (summary.error,) if summary.error else summary.lines:
-            for row in textwrap.wrap(text, LINE, break_long_words=True):
-                column.label(text=row)
+        texts = (summary.error,) if summary.error else summary.lines
+        window.lines(self.layout, texts, alert=bool(summary.error))
 
 
 def register():

@@ -8,14 +8,14 @@ from typing import ClassVar
 
 import bpy
 
-from . import bake_operator, bake_plan, core
+from . import bake_operator, bake_plan, core, window
 from .bake_operator import SARDF_OT_bake
 from .baked import assemble, job, unwrap
 from .parts import part_bake, part_objects, part_pieces
 from .parts.part_error import PartError
 
 
-class SARDF_OT_bake_pieces(bpy.types.Operator):
+class SARDF_OT_bake_pieces(window.Polling, bpy.types.Operator):
     """As SARDF_OT_bake, one piece after the other; Blender data is made when all are there."""
 
     bl_idname = "sardf.bake_pieces"
@@ -25,6 +25,9 @@ class SARDF_OT_bake_pieces(bpy.types.Operator):
         "object that the sections' Spread moves (Esc cancels)"
     )
     bl_options: ClassVar[set] = {"UNDO"}
+
+    watch = SARDF_OT_bake.watch
+    title = "Bake"
 
     @classmethod
     def poll(cls, context):
@@ -43,40 +46,24 @@ class SARDF_OT_bake_pieces(bpy.types.Operator):
             return self.execute(context)
         if not self._begin(context) or not self._step(context):
             return {"CANCELLED"}
-        manager = context.window_manager
-        SARDF_OT_bake.timer = manager.event_timer_add(
-            bake_operator.POLL_SECONDS, window=context.window
-        )
-        manager.progress_begin(0, 100)
-        manager.modal_handler_add(self)
+        self.watch.begin(context, self)
+        self.watch.tell(context, self._stage, self._share)
         return {"RUNNING_MODAL"}
 
-    def modal(self, context, event):
-        if SARDF_OT_bake.timer is None:  # the add-on was disabled, and enabled again
-            self._drop()
-            return {"CANCELLED"}
-        if event.type == "ESC" and event.value == "PRESS":
-            self.cancel(context)
-            self.report({"INFO"}, "Bake cancelled")
-            return {"CANCELLED"}
-        if event.type != "TIMER":
-            return {"PASS_THROUGH"}
+    def poll_work(self, context):
         if self._step(context):
-            context.workspace.status_text_set(f"sardf: {self._stage} (Esc cancels)")
-            context.window_manager.progress_update(self._percent)
-            bake_operator.redraw(context)
+            self.watch.tell(context, self._stage, self._share)
             return {"PASS_THROUGH"}
         self._end(context)
         return self._result
 
     def cancel(self, context):
-        """Esc, or Blender ends the operator itself: nothing of it is left."""
         self._drop()
         self._end(context)
 
     def _begin(self, context):
         part = part_objects.outermost(part_objects.part_of(context.active_object))
-        self._made, self._stage, self._percent, self._result = [], "", 0, {"CANCELLED"}
+        self._made, self._stage, self._share, self._result = [], "", 0.0, {"CANCELLED"}
         try:
             if part is None:
                 raise PartError("no part is active; select one")
@@ -109,8 +96,6 @@ class SARDF_OT_bake_pieces(bpy.types.Operator):
                 traceback.print_exception(error)  # ours to mend: show where
             self.report({"ERROR"}, str(error))
             return False
-        finally:
-            SARDF_OT_bake.stage = self._stage
         return True
 
     def _work(self, context):
@@ -125,7 +110,7 @@ class SARDF_OT_bake_pieces(bpy.types.Operator):
             while running.running:
                 if running.to_unwrap is not None and unwrap.can_unwrap(context):
                     running.go_on(unwrap.smart(context, running.to_unwrap, request.size))
-                self._percent = 100 * (number + running.share) / count
+                self._share = (number + running.share) / count
                 yield f"baking piece {number + 1} of {count}, {100 * running.share:.0f} %"
             if isinstance(running.error, job.NothingLeft):
                 continue

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Channels and attributes as arrays: which images hold them, and their files. No bpy here."""
 
+from ..progress import between
+
 GRAIN = "grain_direction"  # the attribute that directs metal's reflections unless one is named
 PER_IMAGE = 3  # components of a channel that one image holds
 
@@ -62,7 +64,3 @@ def tangent_of(scene, name):
         return name
     known = scene.attributes
     return GRAIN if GRAIN in known and components_of(known[GRAIN]) == 3 else ""
-
-
-def between(progress, start, stop):
-    return lambda share: progress(start + (stop - start) * share)

@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from ..progress import between
 from . import channels as channel_arrays
 from . import store
-from .channels import attributes_at, between, tangent_of
+from .channels import attributes_at, tangent_of
 
 CHANNELS = ("base_color", "roughness", "metallic", "emission", "fractions")
 NORMAL_MAP = "normal"  # a channel more: the solid's normals in the mesh's tangent space

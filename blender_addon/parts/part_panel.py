@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The active part in the sidebar's tab "sardf", and the menu Add > sardf."""
 
-import textwrap
-
 import bpy
 
+from .. import window
 from . import part_bake, part_materials, part_objects, part_properties, part_status, primitives
 
-LINE = 36  # characters that fit into the sidebar at its default width
 BLENDS_WITHOUT_RADIUS = ("min_max", "r_function")
 SHAPE_ICONS = {
     "sphere": "MESH_UVSPHERE", "ellipsoid": "MESH_ICOSPHERE", "box": "MESH_CUBE",
@@ -105,7 +103,7 @@ class SARDF_PT_part(_Panel, bpy.types.Panel):
         if part_bake.is_baked(part):
             layout.prop(part.sardf_part, "show")
         status = part_status.status(part, context.evaluated_depsgraph_get())
-        _lines(layout, [status.error] if status.error else status.lines, bool(status.error))
+        window.lines(layout, [status.error] if status.error else status.lines, bool(status.error))
 
     def _draw_entry(self, settings):
         entry = chosen(settings.entries, settings.entry_index)
@@ -226,14 +224,6 @@ def draw_list(layout, kind, part, which, rows=3):
     for action, icon in actions:
         button = column.operator("sardf.list", text="", icon=icon)
         button.which, button.action = which, action
-
-
-def _lines(layout, lines, alert):
-    column = layout.column(align=True)
-    column.alert = alert
-    for text in lines:
-        for row in textwrap.wrap(text, LINE, break_long_words=True):
-            column.label(text=row)
 
 
 def _add_menu(self, _context):

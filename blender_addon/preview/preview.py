@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import bpy
 from mathutils import Matrix
 
-from .. import core
+from .. import core, window
 from ..baked import assemble
 from . import (
     preview_draw,
@@ -263,7 +263,7 @@ def schedule(*_):
 
 def settings_changed(_settings=None, _context=None):
     """The same after a change in how parts are shown: views are drawn again in any case."""
-    _start(_redraw, SOON)
+    _start(window.redraw, SOON)
     schedule()
 
 
@@ -307,20 +307,13 @@ def _collect():
     if collect():
         CURRENT.wait(AT_ONCE)
         CURRENT.poll()
-        _redraw()
+        window.redraw()
 
 
 def _tick():
     if CURRENT.poll():
-        _redraw()
+        window.redraw()
     return TICK if CURRENT.busy else None
-
-
-def _redraw():
-    for window in bpy.context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()
 
 
 _drawing = []  # what draw_handler_add returned
@@ -386,7 +379,7 @@ def register():
 def unregister():
     for name, function in HANDLERS:
         getattr(bpy.app.handlers, name).remove(function)
-    for timer in (_collect, _tick, _redraw):
+    for timer in (_collect, _tick, window.redraw):
         if bpy.app.timers.is_registered(timer):
             bpy.app.timers.unregister(timer)
     CURRENT.stop()

@@ -1,13 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The preview's part of the tab "sardf", and the buttons in it."""
 
-import textwrap
-
 import bpy
 
+from .. import window
 from . import preview, preview_legend, preview_probe
-
-LINE = 28  # characters that fit into the sidebar at its default width
 
 
 class SARDF_OT_preview_update(bpy.types.Operator):
@@ -57,14 +54,10 @@ class SARDF_PT_preview(bpy.types.Panel):
 
     def _draw_state(self):
         current = preview.CURRENT
-        column = self.layout.column(align=True)
-        column.alert = True
-        for message in preview_legend.messages(current):
-            for row in textwrap.wrap(message, LINE, break_long_words=True):
-                column.label(text=row)
+        texts = list(preview_legend.messages(current))
         if current.no_gpu and not bpy.app.background:
-            for row in textwrap.wrap(f"Coarse meshes are shown: {current.no_gpu}", LINE):
-                column.label(text=row)
+            texts.append(f"Coarse meshes are shown: {current.no_gpu}")
+        window.lines(self.layout, texts, alert=True)
 
 
 CLASSES = (

@@ -4,7 +4,7 @@
 import bpy
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 
-from .. import core
+from .. import core, window
 from . import preview, preview_legend, preview_reading
 
 BESIDE = 18  # pixels from the cursor
@@ -55,7 +55,7 @@ class SARDF_OT_probe(bpy.types.Operator):
             context.workspace.status_text_set(None)
         if SARDF_OT_probe.running is self:
             SARDF_OT_probe.running = None
-        _redraw(context)
+        window.redraw()
 
     def _look(self, context, event):
         self.lines, self._region = [], None
@@ -103,10 +103,3 @@ def read(region, view, at):
         if away < nearest:
             nearest, found = away, preview_reading.lines(part.scene, point)
     return found
-
-
-def _redraw(context):
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()

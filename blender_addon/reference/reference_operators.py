@@ -6,15 +6,13 @@ from typing import ClassVar
 
 import bpy
 
-from .. import core
+from .. import core, window
 from ..baked.store import StoreError
 from ..parts.part_error import PartError
 from . import compare, pictures, work
 
-POLL_SECONDS = 0.05
 
-
-class SARDF_OT_reference(bpy.types.Operator):
+class SARDF_OT_reference(window.Polling, bpy.types.Operator):
     """Render in a worker thread and a child process while Blender stays usable.
 
     The thread runs work.make and never touches bpy; the timer polls it. Images and baked objects
@@ -31,7 +29,8 @@ class SARDF_OT_reference(bpy.types.Operator):
     bl_options: ClassVar[set] = {"UNDO"}
 
     work = None  # of the session, not of the file: the running work.Work, or None
-    stage = ""  # one line for panel and status bar
+    watch = window.Watch(("VIEW_3D", "IMAGE_EDITOR"))
+    title = "Reference"
 
     @classmethod
     def poll(cls, _context):
@@ -58,25 +57,17 @@ class SARDF_OT_reference(bpy.types.Operator):
             return self._fail(error)
         SARDF_OT_reference.work = work.Work(sardf, self._order)
         self._waited = False
-        manager = context.window_manager
-        self._timer = manager.event_timer_add(POLL_SECONDS, window=context.window)
-        manager.modal_handler_add(self)
+        self.watch.begin(context, self)
         self._show(context)
         return {"RUNNING_MODAL"}
 
-    def modal(self, context, event):
-        if event.type == "ESC" and event.value == "PRESS":
-            self._clean_up(context)
-            self.report({"INFO"}, "Reference cancelled")
-            return {"CANCELLED"}  # thread and child process end by themselves, within 0.1 s
-        if event.type != "TIMER":
-            return {"PASS_THROUGH"}
+    def poll_work(self, context):
         running = SARDF_OT_reference.work
         if running.running or not self._waited:
             self._waited = not running.running  # so that what comes now is shown before it blocks
             self._show(context)
             return {"PASS_THROUGH"}
-        self._clean_up(context)
+        self.cancel(context)
         if running.error is not None:
             if not isinstance(running.error, core.load().Error):
                 traceback.print_exception(running.error)  # ours to mend: show where
@@ -84,8 +75,8 @@ class SARDF_OT_reference(bpy.types.Operator):
         return self._commit(context, self._order, running.made)
 
     def cancel(self, context):
-        """Blender ends the operator itself: another file is loaded, or the window closes."""
-        self._clean_up(context)
+        """The thread ends by itself, and POV-Ray with it, within 0.1 s."""
+        stop(context)
 
     def _commit(self, context, order, made):
         for text in order.stage.warnings:
@@ -104,16 +95,7 @@ class SARDF_OT_reference(bpy.types.Operator):
             text = f"Rendering in POV-Ray {100 * running.share:.0f} %"
         else:
             text = "Comparing with Cycles" if self._order.bake else "Storing the picture"
-        SARDF_OT_reference.stage = text
-        context.workspace.status_text_set(f"sardf: {text} (Esc cancels)")
-        _redraw(context)
-
-    def _clean_up(self, context):
-        SARDF_OT_reference.work.cancel()
-        SARDF_OT_reference.work = None
-        context.window_manager.event_timer_remove(self._timer)
-        context.workspace.status_text_set(None)
-        _redraw(context)
+        self.watch.tell(context, text, running.share)
 
     def _fail(self, error):
         self.report({"ERROR"}, str(error))
@@ -152,11 +134,12 @@ def _told(error):
     return f"{text}; or name it in the add-on's preferences" if missing else text
 
 
-def _redraw(context):
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type in ("VIEW_3D", "IMAGE_EDITOR"):
-                area.tag_redraw()
+def stop(context):
+    """Stop the work, forget it, and take back what the window shows of it."""
+    if SARDF_OT_reference.work is not None:
+        SARDF_OT_reference.work.cancel()
+        SARDF_OT_reference.work = None
+    SARDF_OT_reference.watch.end(context)
 
 
 CLASSES = (SARDF_OT_reference, SARDF_OT_reference_show)
@@ -168,7 +151,6 @@ def register():
 
 
 def unregister():
-    if SARDF_OT_reference.work is not None:
-        SARDF_OT_reference.work.cancel()
+    stop(bpy.context)
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

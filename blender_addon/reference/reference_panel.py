@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The panel "Reference" in the sidebars of the 3-D viewport and of the Image Editor."""
 
-import textwrap
 from typing import ClassVar
 
 import bpy
 
+from .. import window
 from . import pictures, reference_operators
-
-LINE = 28  # characters that fit into the sidebar at its default width
 
 
 class _Panel:
@@ -39,9 +37,11 @@ class _Panel:
         if running.work is None:
             self.layout.operator("sardf.reference", icon="RENDER_STILL")
         elif hasattr(self.layout, "progress"):  # Blender 4.0 and later
-            self.layout.progress(factor=running.work.share, text=f"{running.stage} (Esc cancels)")
+            self.layout.progress(
+                factor=running.work.share, text=f"{running.watch.stage} (Esc cancels)"
+            )
         else:
-            self.layout.label(text=f"{running.stage} (Esc cancels)", icon="TIME")
+            self.layout.label(text=f"{running.watch.stage} (Esc cancels)", icon="TIME")
 
     def _draw_pictures(self):
         row = self.layout.row(align=True)
@@ -56,9 +56,7 @@ class _Panel:
             column.label(text=f"mask IoU {settings.intersection_over_union:.5f}")
             column.label(text=f"median {settings.median:.2f}/255")
             column.label(text=f"99 % {settings.quantile_99:.2f}/255")
-        for text in settings.warnings.splitlines():
-            for row in textwrap.wrap(text, LINE, break_long_words=True):
-                column.label(text=row)
+        window.lines(column, settings.warnings.splitlines())
 
 
 class SARDF_PT_reference(_Panel, bpy.types.Panel):

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..baked import job
+from ..progress import between
 
 LOOKS = {"flat": "flat", "shaded": "lit"}  # ours -> the core's
 BAKE_SHARE = 0.5  # of the progress, where something must be baked
@@ -47,12 +48,12 @@ def make(sardf, order, progress=None):
     start = BAKE_SHARE if missing else 0.0
     folder = Path(tempfile.mkdtemp(prefix=f"sardf-{os.getpid()}-"))
     try:
-        _draw(sardf, order, folder, made, _between(progress, 0.0, 1.0 - start))
+        _draw(sardf, order, folder, made, between(progress, 0.0, 1.0 - start))
         for place, (index, part) in enumerate(missing):
             share = start / len(missing)
             begin = 1.0 - start + place * share
-            between = _between(progress, begin, begin + share)
-            made.baked[index] = job.make_part(sardf, part.request, between)
+            told = between(progress, begin, begin + share)
+            made.baked[index] = job.make_part(sardf, part.request, told)
     except BaseException:
         for part in made.baked.values():
             part.store.discard()
@@ -76,16 +77,10 @@ def _draw(sardf, order, folder, made, progress):
             samples=order.samples,
             light_samples=order.light_samples,
             program=order.program,
-            progress=_between(progress, place / count, (place + 1) / count),
+            progress=between(progress, place / count, (place + 1) / count),
         )
         made.sentences += [sentence for sentence in said if sentence not in made.sentences]
         made.pictures[look] = picture.read_bytes()
-
-
-def _between(progress, start, stop):
-    if progress is None:
-        return None
-    return lambda share: progress(start + (stop - start) * share)
 
 
 class Work:

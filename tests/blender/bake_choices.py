@@ -4,12 +4,14 @@ destinations, and what is said when they cannot be had; run by part_run.py with 
 
 import functools
 import json
+import time
 from pathlib import Path
 
 import bpy
 import numpy as np
-from sardf_blender import bake_info, bake_operator, bake_plan, bake_settings
-from sardf_blender.baked import assemble, unwrap
+import sardf_blender
+from sardf_blender import bake_info, bake_operator, bake_plan, core
+from sardf_blender.baked import assemble, job, unwrap
 from sardf_blender.parts import part_objects
 
 SCENE = {
@@ -53,7 +55,7 @@ def kinds(path):
 def cases(folder, prepare):
     folder.mkdir()
     result = {}
-    for case in (channels, existing, smart, destinations, mistakes, material, info):
+    for case in (channels, existing, smart, destinations, mistakes, material, info, disabled):
         bpy.ops.wm.read_factory_settings(use_empty=True)
         settings = bpy.context.scene.sardf
         settings.resolution, settings.size = 16, "256"
@@ -121,7 +123,7 @@ def existing(_folder, settings, bake):
     result["heat"] = heat_error(item)
     result["attributes"] = sorted(a.name for a in item.data.attributes if a.name in ("heat", "red"))
     result["left half"] = covered_half(images_of(item)["sardf heat"])
-    result |= faults(settings, bake, item)
+    result |= faults(bake, item)
     settings.uv_object = other_mesh()
     result["other"] = other_object(settings, bake)
     return result
@@ -155,7 +157,7 @@ def covered_half(image):
     return [float(np.ptp(values[:, :128])), float(np.ptp(values[:, 160:]))]
 
 
-def faults(settings, bake, item):
+def faults(bake, item):
     """What is said about wrong UV maps; the object stays as it is."""
     result = {}
     layer = item.data.uv_layers[0].data
@@ -225,7 +227,7 @@ def smart(_folder, settings, bake):
     cube = bpy.context.active_object
     before = {kind: len(getattr(bpy.data, kind)) for kind in ("objects", "meshes")}
     item = bake()
-    result = {"heat": heat_error(item), "faces": len(item.data.polygons)}
+    result = {"heat": heat_error(item)}
     result["more"] = {k: len(getattr(bpy.data, k)) - before[k] for k in before}
     result["density"] = item[assemble.DENSITY]
     bpy.context.view_layer.objects.active = cube
@@ -319,7 +321,7 @@ def absolute(node):
     return x, y
 
 
-def info(_folder, settings, bake):
+def info(_folder, _settings, bake):
     found = bake_info.measure_now(bpy.context)
     cost = bake_info.cost(bpy.context)
     item = bake()
@@ -329,7 +331,28 @@ def info(_folder, settings, bake):
         "estimated": cost.texels_per_unit,
         "baked": item[assemble.DENSITY],
         "faces": [cost.faces, len(item.data.polygons)],
-        "plan": bake_plan.active_part(bpy.context) is not None,
-        "names": bake_settings.names_of(settings.channels),
-        "job": bake_operator.SARDF_OT_bake.job is None,
     }
+
+
+def disabled(folder, settings, bake):
+    """The add-on is disabled while its thread bakes, and enabled again."""
+    target = folder / "stopped"
+    settings.destination, settings.folder = "FOLDER", str(target)
+    settings.resolution, settings.size = 200, "4096"
+    before = {kind: len(getattr(bpy.data, kind)) for kind in ("objects", "meshes", "images")}
+    running = job.Job(core.load(), bake_plan.make(bpy.context).request)
+    bake_operator.SARDF_OT_bake.job = running  # as in a window, where it goes on by itself
+    while running.running and running.share == 0:
+        time.sleep(0.001)
+    sardf_blender.unregister()
+    while running.running:
+        time.sleep(0.001)
+    result = {"cancelled": running.cancelled and running.part is None}
+    result["left"] = target.exists()
+    result["same"] = before == {kind: len(getattr(bpy.data, kind)) for kind in before}
+    sardf_blender.register()
+    settings = bpy.context.scene.sardf
+    settings.resolution, settings.size = 16, "256"
+    result["again"] = isinstance(bake(), bpy.types.Object)
+    result["files"] = sorted(path.name for path in target.iterdir())
+    return result

@@ -4,15 +4,15 @@ scene file. The result has the colours of 48 x 48 pixels by the shader and by th
 points that they show."""
 
 import sys
-import tempfile
 from pathlib import Path
 
 import bpy
 import numpy as np
 from sardf_blender.baked import exact, groups
+from seen_from_above import look_from_above, rendered_color, rendered_vectors, see_points
 
 PIXELS = 48
-WIDTH, RANGE = 12, 16.0
+WIDTH, FARTHEST = 12, 8.0
 
 
 def main(scene_file):
@@ -43,50 +43,17 @@ def ours(tree, names):
 
 
 def pictures(scene, tree):
-    camera = bpy.data.objects.new("above", bpy.data.cameras.new("above"))
-    camera.data.type, camera.data.ortho_scale = "ORTHO", WIDTH
-    camera.location.z = 20
-    scene.collection.objects.link(camera)
-    scene.camera = camera
-    scene.render.resolution_x = scene.render.resolution_y = PIXELS
-    scene.render.resolution_percentage = 100
-    scene.cycles.samples, scene.cycles.use_denoising = 1, False
-    scene.cycles.pixel_filter_type, scene.cycles.filter_width = "BOX", 0.01
-    settings = scene.render.image_settings
-    settings.file_format, settings.color_mode, settings.color_depth = "OPEN_EXR", "RGB", "32"
+    look_from_above(scene, WIDTH, PIXELS)
+    see_points(scene)
     switch = tree.nodes[groups.node_name(exact.SWITCH)].outputs[0]
     mixed = tree.nodes[groups.node_name("exact base_color")]
     color = next(socket for socket in mixed.outputs if socket.identifier == "Result_Color")
-    place = tree.nodes.new("ShaderNodeVectorMath")
-    place.operation = "MULTIPLY_ADD"
-    place.inputs[1].default_value = (1 / RANGE,) * 3
-    place.inputs[2].default_value = (0.5,) * 3
     geometry = tree.nodes.new("ShaderNodeNewGeometry")
-    tree.links.new(geometry.outputs["Position"], place.inputs[0])
     result = {"switch": switch.default_value}
-    seen = (picture(scene, tree, place.outputs["Vector"]) - 0.5) * RANGE
+    seen = rendered_vectors(scene, tree, geometry.outputs["Position"], FARTHEST).reshape(-1, 3)
     hit = np.abs(seen).max(axis=-1) < WIDTH / 2  # what is beside the part is black
     result["positions"] = np.where(hit[:, None], seen, 0).tolist()
-    result["shader"] = picture(scene, tree, color).tolist()
+    result["shader"] = rendered_color(scene, tree, color).reshape(-1, 3).tolist()
     switch.default_value = 0.0
-    result["textures"] = picture(scene, tree, color).tolist()
+    result["textures"] = rendered_color(scene, tree, color).reshape(-1, 3).tolist()
     return result
-
-
-def picture(scene, tree, color):
-    """(pixels, 3) of what glows in a socket's colour."""
-    output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
-    before = output.inputs["Surface"].links[0].from_socket
-    glow = tree.nodes.new("ShaderNodeEmission")
-    tree.links.new(color, glow.inputs["Color"])
-    tree.links.new(glow.outputs["Emission"], output.inputs["Surface"])
-    with tempfile.TemporaryDirectory() as folder:
-        scene.render.filepath = str(Path(folder) / "picture.exr")
-        bpy.ops.render.render(write_still=True)
-        image = bpy.data.images.load(scene.render.filepath)
-        values = np.empty(PIXELS * PIXELS * 4, dtype=np.float32)
-        image.pixels.foreach_get(values)
-        bpy.data.images.remove(image)
-    tree.nodes.remove(glow)
-    tree.links.new(before, output.inputs["Surface"])
-    return values.reshape(-1, 4)[:, :3].astype(float)

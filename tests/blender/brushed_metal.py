@@ -55,8 +55,6 @@ def main(blend, result_file):
     part.rotation_euler.z = math.pi / 2
     arrays["turned"] = rendered_vectors(scene, tree, tangent)
     part.rotation_euler.z = 0.0
-    output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
-    tree.links.new(shader.outputs["BSDF"], output.inputs["Surface"])
     light_one_lamp(scene)
     arrays["highlight"] = rendered(scene, 32)
     np.savez(result_file, links=json.dumps(links), **arrays)

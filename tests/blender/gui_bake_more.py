@@ -10,14 +10,24 @@ import sys
 import tempfile
 import threading
 import time
-import traceback
 from pathlib import Path
 
 import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import addon_folder
-from gui_window import addon, drive, override, result, screenshot, until, view, wait
+from gui_window import (
+    addon,
+    drawn_again,
+    drive,
+    override,
+    result,
+    screenshot,
+    until,
+    view,
+    wait,
+    watch,
+)
 
 ADDON, SCENE = sys.argv[-4:-2]
 LIMIT = 300.0  # seconds for anything at most
@@ -29,21 +39,11 @@ def bake_class():
     return addon("bake_operator").SARDF_OT_bake
 
 
-def watch():
-    """Put the panel into the first tab, keep its first error, and what the operator reports."""
+def watch_bake():
+    """Put the panel into the first tab, and keep what the operator reports."""
     panel = addon("bake_panel").SARDF_PT_bake
     panel.bl_category = "Tool"
-    original = panel.draw
-
-    def draw(self, context):
-        try:
-            original(self, context)
-        except Exception:
-            result["errors"].append(traceback.format_exc())
-            raise
-        result["drawn"] = result.get("drawn", 0) + 1
-
-    panel.draw = draw
+    watch(panel)
     fail = bake_class()._fail
 
     def reported(self, error):
@@ -59,9 +59,7 @@ def contents():
 
 
 def redrawn():
-    before = result.get("drawn", 0)
-    view()[1].tag_redraw()
-    yield from until(lambda: result.get("drawn", 0) > before, "the panel to be drawn", LIMIT)
+    yield from drawn_again("SARDF_PT_bake", LIMIT)
 
 
 def start():
@@ -119,7 +117,7 @@ def escape(folder):
         job = start()
         yield from until(lambda job=job, s=share: job.share > s or not job.running, "work", LIMIT)
         yield from redrawn()
-        result["stage"] = bake_class().stage
+        result["stage"] = bake_class().watch.stage
         if share < 0.6:
             screenshot("bake_progress")
         result["interrupted"].append(job.share)
@@ -211,7 +209,9 @@ def unwrapped():
     yield from until(lambda: job.to_unwrap is not None or not job.running, "the mesh", LIMIT)
     if job.error is not None:
         raise job.error
-    yield from until(lambda: "Object Mode" in bake_class().stage, "the wish for Object Mode", LIMIT)
+    yield from until(
+        lambda: "Object Mode" in bake_class().watch.stage, "the wish for Object Mode", LIMIT
+    )
     result["mode"] = cube.mode
     with override():
         bpy.ops.object.mode_set(mode="OBJECT")
@@ -261,5 +261,5 @@ def box(node):
 
 
 bpy.context.preferences.view.show_splash = False
-addon_folder.load(ADDON, before=watch)
+addon_folder.load(ADDON, before=watch_bake)
 drive(scenario(), 0.02)

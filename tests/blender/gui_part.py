@@ -6,18 +6,29 @@ since Blender 3.4 has no way but a click to choose another.
 """
 
 import sys
-import traceback
 from pathlib import Path
 
 import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import addon_folder
-from gui_window import addon, drive, override, result, screenshot, until, view, wait
+from gui_window import (
+    RESULT,
+    addon,
+    drawn,
+    drawn_again,
+    drive,
+    override,
+    result,
+    screenshot,
+    until,
+    view,
+    wait,
+    watch,
+)
 
 ADDON, SCENE = sys.argv[-4:-2]
 LIMIT = 120.0  # seconds for anything at most
-result["drawn"] = {}
 
 
 def watch_panels():
@@ -29,39 +40,8 @@ def watch_panels():
         watch(cls, "draw_item" if issubclass(cls, bpy.types.UIList) else "draw")
 
 
-def watch(cls, name):
-    """Count complete draws, and keep the first error."""
-    original = getattr(cls, name)
-
-    if name == "draw":
-
-        def draw(self, context):
-            counted(cls, lambda: original(self, context))
-
-    else:
-
-        def draw(self, context, layout, data, item, icon, active, prop, index):
-            words = (context, layout, data, item, icon, active, prop, index)
-            counted(cls, lambda: original(self, *words))
-
-    setattr(cls, name, draw)
-
-
-def counted(cls, call):
-    try:
-        call()
-    except Exception:
-        result["errors"].append(traceback.format_exc())
-        raise
-    result["drawn"][cls.__name__] = result["drawn"].get(cls.__name__, 0) + 1
-
-
-def drawn(*names):
-    return all(result["drawn"].get(name, 0) for name in names)
-
-
 def until_drawn(*names):
-    return until(lambda: drawn(*names), f"a draw of {names}", LIMIT)
+    return until(lambda: all(map(drawn, names)), f"a draw of {names}", LIMIT)
 
 
 def scenario():
@@ -87,16 +67,44 @@ def scenario():
         with override():
             bpy.context.view_layer.objects.active = part
             bpy.ops.sardf.primitive_add(kind=kind)
-        before = result["drawn"]["SARDF_PT_part"]
-        area.tag_redraw()
-        yield from until(
-            lambda before=before: result["drawn"]["SARDF_PT_part"] > before, "the panel", LIMIT
-        )
+        yield from drawn_again("SARDF_PT_part", LIMIT)
+    yield from lives_on()
     with override():
         bpy.ops.wm.call_menu(name="SARDF_MT_add")
     yield from until_drawn("SARDF_MT_add")
     yield from wait(1)
     screenshot("parts")
+
+
+def entries():
+    objects = addon("parts.part_objects")
+    part = objects.outermost(objects.part_of(bpy.context.view_layer.objects.active))
+    return [entry.object.name for entry in part.sardf_part.entries]
+
+
+def lives_on():
+    """How many entries the part has when one is added, undone, redone, saved and opened again; the
+    panel is drawn after each."""
+    with override():
+        bpy.ops.ed.undo_push(message="before the sphere")
+    result["entries"] = [len(entries())]
+    path = str(Path(RESULT).with_suffix(".blend"))
+    for step in (
+        lambda: bpy.ops.sardf.primitive_add(kind="sphere") and bpy.ops.ed.undo_push(message="it"),
+        bpy.ops.ed.undo,
+        bpy.ops.ed.redo,
+        lambda: bpy.ops.wm.save_as_mainfile(filepath=path),
+    ):
+        with override():
+            step()
+        yield from drawn_again("SARDF_PT_part", LIMIT)
+        result["entries"].append(len(entries()))
+    saved = entries()
+    bpy.ops.wm.read_homefile(use_empty=True, load_ui=False)
+    yield
+    bpy.ops.wm.open_mainfile(filepath=path, load_ui=False)
+    yield from drawn_again("SARDF_PT_part", LIMIT)
+    result["reopened"] = entries() == saved
 
 
 bpy.context.preferences.view.show_splash = False

@@ -8,35 +8,35 @@ import os
 import subprocess
 import sys
 import time
-import traceback
 from pathlib import Path
 
 import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import addon_folder
-from gui_window import addon, drive, override, result, screenshot, until, view, wait
+from gui_window import (
+    addon,
+    drawn_again,
+    drive,
+    override,
+    result,
+    screenshot,
+    until,
+    view,
+    wait,
+    watch,
+)
 
 ADDON = sys.argv[-3]
 LIMIT = 120.0  # seconds for anything at most
-result["drawn"] = 0
 
 
 def watch_panel():
     reference_panel = addon("reference.reference_panel")
-    original = reference_panel._Panel.draw
     reference_panel._Panel.bl_category = "Tool"
     reference_panel.SARDF_PT_reference.bl_options = set()
-
-    def draw(self, context):
-        try:
-            original(self, context)
-        except Exception:
-            result["errors"].append(traceback.format_exc())
-            raise
-        result["drawn"] += 1
-
-    reference_panel._Panel.draw = draw
+    for cls in reference_panel.CLASSES:
+        watch(cls)
 
 
 def running():
@@ -82,12 +82,10 @@ def stopped(scene):
     begin()
     yield from until(lambda: povray_runs(), "POV-Ray to start", LIMIT)
     work = running()
-    result["seen"] = []
-    end = time.monotonic() + 3
-    while time.monotonic() < end and len(set(result["seen"])) < 3:
-        result["seen"].append(work.share)
-        yield
+    yield from until(lambda: work.share > 0, "POV-Ray to tell how far it is", LIMIT)
+    yield from drawn_again("SARDF_PT_reference", LIMIT)
     screenshot("reference_running")
+    result["interrupted"] = work.share
     pressed = time.monotonic()
     press_escape()
     yield from until(lambda: running() is None, "Esc", LIMIT)
@@ -113,9 +111,7 @@ def finished(scene, editor):
         with bpy.context.temp_override(window=view()[0]):
             result[kind] = list(bpy.ops.sardf.reference_show(kind=kind))
     editor.spaces.active.show_region_ui = True
-    before = result["drawn"]
-    view()[1].tag_redraw()
-    yield from until(lambda: result["drawn"] > before, "the panel", LIMIT)
+    yield from drawn_again("SARDF_PT_reference", LIMIT)
     yield from wait(1)
     screenshot("reference")
 

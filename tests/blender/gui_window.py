@@ -23,7 +23,7 @@ import addon_folder
 from installing import MODULE
 
 FOLDER, RESULT = sys.argv[-2:]
-result = {"errors": []}
+result = {"errors": [], "drawn": {}}
 
 
 class TimeOut(Exception):
@@ -44,6 +44,46 @@ def until(condition, what, limit):
             screenshot(f"{Path(RESULT).stem}_time_out")
             raise TimeOut(f"waited {limit:.0f} s for {what}")
         yield
+
+
+def watch(cls, name="draw"):
+    """Count, as result["drawn"][class], complete draws of a panel, a menu or (name "draw_item") a
+    list, and keep what is raised there. Blender counts a draw function's arguments."""
+    original = getattr(cls, name)
+
+    if name == "draw":
+
+        def draw(self, context):
+            _counted(cls, lambda: original(self, context))
+
+    else:
+
+        def draw(self, context, layout, data, item, icon, active, prop, index):
+            words = (context, layout, data, item, icon, active, prop, index)
+            _counted(cls, lambda: original(self, *words))
+
+    setattr(cls, name, draw)
+
+
+def _counted(cls, call):
+    try:
+        call()
+    except Exception:
+        result["errors"].append(traceback.format_exc())
+        raise
+    result["drawn"][cls.__name__] = drawn(cls.__name__) + 1
+
+
+def drawn(name):
+    """How often a class that is watched was drawn."""
+    return result["drawn"].get(name, 0)
+
+
+def drawn_again(name, limit):
+    """Wait until a class that is watched was drawn with everything that is in it now."""
+    before = drawn(name)
+    view()[1].tag_redraw()
+    yield from until(lambda: drawn(name) > before, f"{name} to be drawn", limit)
 
 
 def view():
@@ -88,11 +128,15 @@ def click(x, y):
 
 
 def open_tab(area, is_drawn, limit):
-    """Open an area's sidebar and click down its column of tabs until ours is shown: Blender 3.4 has
-    no other way to choose one."""
+    """Open an area's sidebar at our tab. Blender 3.4 has no other way to choose one than to click
+    down the column of tabs; a second click on one closes it in Blender 5."""
     area.spaces.active.show_region_ui = True
     sidebar = next(region for region in area.regions if region.type == "UI")
     yield from until(lambda: sidebar.width > 50, "the sidebar to open", limit)
+    if hasattr(sidebar, "active_panel_category"):
+        yield from until(lambda: _chosen(area, sidebar), "our tab to be known", limit)
+        yield from until(is_drawn, "our tab to be drawn", limit)
+        return
     right, top = sidebar.x + sidebar.width, sidebar.y + sidebar.height
     for down in range(30, 500, 25):
         click(right - 10, top - down)
@@ -103,6 +147,16 @@ def open_tab(area, is_drawn, limit):
             return
     screenshot(f"{Path(RESULT).stem}_time_out")
     raise TimeOut("no tab showed the panel")
+
+
+def _chosen(area, sidebar):
+    """Choose our tab, which Blender knows once it has drawn the column of tabs."""
+    area.tag_redraw()
+    try:
+        sidebar.active_panel_category = "sardf"
+    except (AttributeError, TypeError):
+        return False
+    return True
 
 
 def drive(steps, tick):

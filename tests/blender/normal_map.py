@@ -14,7 +14,7 @@ import bpy
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from seen_from_above import look_from_above, rendered_vectors
+from seen_from_above import look_from_above, rendered_vectors, see_points
 
 PIXELS, WIDTH = 64, 2.4
 
@@ -62,8 +62,7 @@ def main(blend, result_file):
     bpy.ops.wm.open_mainfile(filepath=blend)
     scene = bpy.context.scene
     look_from_above(scene, WIDTH, PIXELS)
-    scene.cycles.pixel_filter_type = "BOX"
-    scene.cycles.filter_width = 0.01
+    see_points(scene)
     scene.world = None  # black beside the part
     part = next(item for item in scene.objects if item.type == "MESH")
     tree = part.data.materials[0].node_tree

@@ -6,15 +6,17 @@ and "values", (1024, names), of the shader's outputs, both as Cycles has them in
 """
 
 import sys
-import tempfile
 from pathlib import Path
 
 import bpy
 import numpy as np
-from mathutils import Euler, Vector
+from mathutils import Euler, Matrix
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from seen_from_above import look_from_above, rendered_vectors, see_points
 
 PIXELS = 32
-RANGE = 64.0  # of what is shown, around 0
+FARTHEST = 32.0  # from 0, of what is shown
 
 
 def python_of_blender():
@@ -31,50 +33,20 @@ def look_at_plane(scene):
     turn = Euler((0.5, 0.4, 0.3)).to_matrix().to_4x4()
     turn.translation = (0.3, 0.2, 0.4)
     plane.data.transform(turn)
-    camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
-    camera.data.type, camera.data.ortho_scale = "ORTHO", 6
-    shift = turn.copy()
-    shift.translation = turn @ Vector((0, 0, 20))
-    camera.matrix_world = shift
-    scene.collection.objects.link(camera)
-    scene.camera = camera
-    scene.render.engine = "CYCLES"
-    scene.render.resolution_x = scene.render.resolution_y = PIXELS
-    scene.render.resolution_percentage = 100
-    scene.cycles.samples, scene.cycles.use_denoising = 1, False
-    scene.cycles.pixel_filter_type, scene.cycles.filter_width = "BOX", 0.01
+    look_from_above(scene, 6, PIXELS, turn @ Matrix.Translation((0, 0, 20)))
+    see_points(scene)
     scene.cycles.shading_system = True
-    settings = scene.render.image_settings
-    settings.file_format, settings.color_mode, settings.color_depth = "OPEN_EXR", "RGB", "32"
     return plane
 
 
-def rendered(scene, tree, sockets):
-    """(1024, 3): up to three outputs."""
-    scene.render.filepath = str(Path(tempfile.mkdtemp()) / "picture.exr")
+def shown(scene, tree, sockets):
+    """(1024, up to 3) of as many outputs that are numbers."""
     joined = tree.nodes.new("ShaderNodeCombineXYZ")
-    scaled = tree.nodes.new("ShaderNodeVectorMath")
-    scaled.operation = "MULTIPLY_ADD"
-    scaled.inputs[1].default_value = (1 / RANGE,) * 3
-    scaled.inputs[2].default_value = (0.5,) * 3
-    glow = tree.nodes.new("ShaderNodeEmission")
-    output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
-    if len(sockets) == 1 and sockets[0].type == "VECTOR":
-        tree.links.new(sockets[0], scaled.inputs[0])
-    else:
-        for place, socket in enumerate(sockets):
-            tree.links.new(socket, joined.inputs[place])
-        tree.links.new(joined.outputs[0], scaled.inputs[0])
-    tree.links.new(scaled.outputs["Vector"], glow.inputs["Color"])
-    tree.links.new(glow.outputs["Emission"], output.inputs["Surface"])
-    bpy.ops.render.render(write_still=True)
-    image = bpy.data.images.load(scene.render.filepath)
-    values = np.empty(PIXELS * PIXELS * 4, dtype=np.float32)
-    image.pixels.foreach_get(values)
-    bpy.data.images.remove(image)
-    for node in (joined, scaled, glow):
-        tree.nodes.remove(node)
-    return (values.reshape(-1, 4)[:, :3].astype(float) - 0.5) * RANGE
+    for place, socket in enumerate(sockets):
+        tree.links.new(socket, joined.inputs[place])
+    values = rendered_vectors(scene, tree, joined.outputs[0], FARTHEST)
+    tree.nodes.remove(joined)
+    return values.reshape(-1, 3)[:, : len(sockets)]
 
 
 def script_node(tree, text):
@@ -102,11 +74,11 @@ def main(text_file, result_file):
     tree.nodes.remove(next(n for n in tree.nodes if n.type == "BSDF_PRINCIPLED"))
     node = script_node(tree, Path(text_file).read_text())
     geometry = tree.nodes.new("ShaderNodeNewGeometry")
-    arrays = {"positions": rendered(scene, tree, [geometry.outputs["Position"]])}
+    places = rendered_vectors(scene, tree, geometry.outputs["Position"], FARTHEST)
+    arrays = {"positions": places.reshape(-1, 3)}
     outputs = list(node.outputs)
     columns = [
-        rendered(scene, tree, outputs[first : first + 3])[:, : len(outputs[first : first + 3])]
-        for first in range(0, len(outputs), 3)
+        shown(scene, tree, outputs[first : first + 3]) for first in range(0, len(outputs), 3)
     ]
     arrays["values"] = np.concatenate(columns, axis=1)
     arrays["names"] = np.array([output.name for output in outputs])

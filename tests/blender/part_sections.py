@@ -70,7 +70,6 @@ def mesh_of(item):
         "red": [value.value for value in item.data.attributes["red"].data],
         "volume": made.calc_volume(),
         "closed": closed,
-        "images": len(item.data.materials[0].node_tree.nodes),
     }
     made.free()
     return result

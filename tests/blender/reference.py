@@ -239,6 +239,24 @@ def missing():
     return {"compared": result, "alone": compared(), "left": counts() == before}
 
 
+def scene_file(path):
+    """An object that was baked from a scene file, moved; without the file's sections; and what is
+    said when the file is gone."""
+    scene = start(resolution=32)
+    scene.sardf.filepath = path
+    bpy.ops.sardf.bake()
+    item = bpy.context.active_object
+    item.matrix_world = Matrix.LocRotScale((0.3, 0, 0.2), Euler((0.1, 0.2, 0.3)), (0.3,) * 3)
+    bpy.context.view_layer.update()
+    result = {"cut": compared()}
+    scene.sardf.sections = False
+    bpy.ops.sardf.bake()
+    result["whole"] = compared()
+    Path(path).unlink()
+    result["gone"] = compared()
+    return result
+
+
 def command(folder):
     """The command's exit codes, and the names and numbers of what it wrote."""
     start()

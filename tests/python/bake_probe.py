@@ -44,7 +44,6 @@ with tempfile.TemporaryDirectory() as folder:
     before, begun = memory("VmRSS"), time.perf_counter()
     part = job.make_part(sardf, request, progress)
     took, peak = time.perf_counter() - begun, memory("VmHWM") - before
-    files = sum(part.store.path(name).stat().st_size for name in part.maps)
 marks = [begun, *(marks.get(place, begun) for place in range(3))]
 print(json.dumps({
     "seconds": [cost.seconds, took],
@@ -58,5 +57,4 @@ print(json.dumps({
     "bytes": [cost.bytes, peak],
     "faces": [cost.faces, len(part.mesh.faces)],
     "texels per unit": [cost.texels_per_unit, part.texels_per_unit],
-    "files": files,
 }))  # fmt: skip

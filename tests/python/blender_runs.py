@@ -108,8 +108,8 @@ def tool(script, *arguments):
     return subprocess.run([str(word) for word in words], capture_output=True, text=True)
 
 
-def start_script(version, script, *arguments, user_folder, env=None):
-    """Start a Python script in a Blender version.
+def start_script(version, script, *arguments, user_folder, env=None, cwd=None):
+    """Start a Python script in a Blender version, in the folder `cwd` if it is given.
 
     For 3.4.1 this is the documented command without --python-exit-code, so that the exit code is
     the script's own doing.
@@ -122,6 +122,7 @@ def start_script(version, script, *arguments, user_folder, env=None):
         command = [str(BPY_PYTHON), str(script), *([] if script == HEADLESS else ["--"]), *words]
     return subprocess.Popen(
         command,
+        cwd=cwd,
         env=environment(user_folder) | (env or {}),
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -157,19 +158,37 @@ def in_window_system(words, user_folder):
     return [ENTER_CHROOT, "exec", WINDOW_CHROOT, "env", *folders, *words], ours
 
 
+def newest_zip():
+    """The extension of dist/ that scripts/package made last."""
+    return max((ROOT / "dist").glob("sardf_blender-*[0-9].zip"), key=os.path.getmtime)
+
+
 def install_for_window(zips, user_folder):
     """Install the add-on where run_in_window finds it, without enabling it."""
     if not WINDOW_CHROOT:
         with zipfile.ZipFile(zips["3.4.1"]) as archive:
             archive.extractall(user_folder / "scripts/addons")
         return
-    zip_file = max((ROOT / "dist").glob("sardf_blender-*[0-9].zip"), key=os.path.getmtime)
     for kind in ("config", "scripts"):
         (user_folder / kind).mkdir(parents=True, exist_ok=True)
-    words = ["blender", "-c", "extension", "install-file", "-r", "user_default", str(zip_file)]
+    words = ["blender", "-c", "extension", "install-file", "-r", "user_default", str(newest_zip())]
     words, ours = in_window_system(words, user_folder)
     done = subprocess.run(words, env=ours, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def addon_for_window(user_folder):
+    """The add-on's folder for scripts that load it themselves: the checkout's, or, for a Blender in
+    a chroot, what the newest zip holds, with all that its wheels hold beside it."""
+    if not WINDOW_CHROOT:
+        return ROOT / "blender_addon"
+    with zipfile.ZipFile(newest_zip()) as archive:
+        archive.extractall(user_folder)
+    folder = user_folder / "sardf_blender"
+    for wheel in (folder / "wheels").iterdir():
+        with zipfile.ZipFile(wheel) as archive:
+            archive.extractall(folder / "vendor")
+    return folder
 
 
 def run_in_window(script, *arguments, user_folder, size, limit):

@@ -1,7 +1,7 @@
 """Fixtures that several files use."""
 
 import pytest
-from blender_runs import build_zips
+from blender_runs import VERSIONS, build_zips
 from repository import ROOT
 
 
@@ -12,6 +12,12 @@ def zips(tmp_path_factory):
     assert len(wheels) == 1, "scripts/setup builds one wheel"
     extension, legacy = build_zips(wheels[0], tmp_path_factory.mktemp("dist"))
     return {"3.4.1": legacy, "5.0.1": extension}
+
+
+@pytest.fixture(scope="module", params=VERSIONS)
+def version(request):
+    """Each Blender in which a test runs without a window."""
+    return request.param
 
 
 def pytest_collection_modifyitems(items):

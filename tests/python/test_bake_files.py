@@ -13,11 +13,7 @@ import sardf
 from repository import ROOT
 from sardf import _image
 
-sys.path.insert(0, str(ROOT))
-try:
-    from blender_addon.baked import clock, job, store
-finally:
-    sys.path.remove(str(ROOT))
+from blender_addon.baked import clock, job, store
 
 SCENE = {
     "sardf": 1,

@@ -75,7 +75,6 @@ def test_wireframes_follow_driven_properties(rendered):
     assert rendered[1]["24"][3] == pytest.approx(0.1 + 0.005 * 24, rel=1e-5)
 
 
-@pytest.mark.parametrize("version", VERSIONS)
 def test_wrong_frames_are_told(version, tmp_path):
     part = tmp_path / "part.json"
     for words, said in (

@@ -106,7 +106,6 @@ def test_metal_is_brushed_along_the_attribute(plate):
     assert spread_y > 1.4 * spread_x
 
 
-@pytest.mark.parametrize("version", VERSIONS)
 def test_another_attribute_can_be_named(version, tmp_path):
     output = tmp_path / "out"
     scene = write_scene(tmp_path, PLATE)
@@ -116,7 +115,6 @@ def test_another_attribute_can_be_named(version, tmp_path):
     assert json.loads(str(arrays["links"]))["attribute"] == "along_x"
 
 
-@pytest.mark.parametrize("version", VERSIONS)
 def test_baking_again_changes_the_attribute_and_keeps_the_rest(version, tmp_path):
     attributes = {name: PLATE["attributes"][name] for name in ("along_x", "heat")}
     scene = write_scene(tmp_path, PLATE | {"attributes": attributes | {"around": ["=-y", "=x", 0]}})

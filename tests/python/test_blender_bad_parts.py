@@ -1,12 +1,7 @@
 """What is said about wrong parts, and random work on parts, in Blender 3.4.1 and bpy 5.0.1."""
 
 import pytest
-from blender_runs import VERSIONS, run_check
-
-
-@pytest.fixture(scope="module", params=VERSIONS)
-def version(request):
-    return request.param
+from blender_runs import run_check
 
 
 @pytest.fixture(scope="module")

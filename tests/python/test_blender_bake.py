@@ -143,3 +143,12 @@ def test_the_panel_knows_channels_and_cost_before_the_bake(found):
     assert made["estimated"] == pytest.approx(made["baked"], rel=0.3)
     told, baked = made["faces"]
     assert told == pytest.approx(baked, rel=0.25)
+
+
+def test_an_add_on_that_is_disabled_stops_its_bake_and_works_again(found):
+    made = found["disabled"]
+    assert made["cancelled"]
+    assert not made["left"]
+    assert made["same"]
+    assert made["again"]
+    assert "graded_base_color.exr" in made["files"]

@@ -3,8 +3,7 @@
 from itertools import combinations
 
 import pytest
-from blender_runs import GRADED_SPHERE, SCRIPTS, run_in_window, write_scene
-from repository import ROOT
+from blender_runs import GRADED_SPHERE, SCRIPTS, addon_for_window, run_in_window, write_scene
 
 SCENE = GRADED_SPHERE | {
     "materials": {
@@ -21,14 +20,15 @@ pytestmark = pytest.mark.long
 @pytest.fixture(scope="module")
 def window(tmp_path_factory):
     folder = tmp_path_factory.mktemp("bake")
+    user = folder / "user"
     return run_in_window(
-        SCRIPTS / "gui_bake_more.py", ROOT / "blender_addon", write_scene(folder, SCENE),
-        user_folder=folder / "user", size=(1280, 1000), limit=560,
+        SCRIPTS / "gui_bake_more.py", addon_for_window(user), write_scene(folder, SCENE),
+        user_folder=user, size=(1280, 1000), limit=560,
     )  # fmt: skip
 
 
 def test_the_panel_tells_time_and_density_before_the_bake(window):
-    assert window["drawn"] > 3
+    assert window["drawn"]["SARDF_PT_bake"] > 3
     assert window["estimate"] > 0
 
 

@@ -189,7 +189,6 @@ def test_shaded_look_is_neither_dark_nor_burnt_out(sphere):
     assert np.percentile(np.ptp(backdrop, axis=-1), 95) < 0.06
 
 
-@pytest.mark.parametrize("version", VERSIONS)
 def test_creases_stay_sharp_and_only_pictures_are_written(version, tmp_path):
     """Each pixel of a brick shows one of the three visible faces' normals, not a mixture."""
     scene = write_scene(tmp_path, BOX)
@@ -228,7 +227,6 @@ def check_failure(done, code, *words):
         assert word in lines[0]
 
 
-@pytest.mark.parametrize("version", VERSIONS)
 def test_bad_input_has_exit_code_2_and_leaves_nothing(version, tmp_path):
     broken = tmp_path / "broken.json"
     broken.write_text('{ "sardf": 1,\n  "fields": {\n')
@@ -239,7 +237,6 @@ def test_bad_input_has_exit_code_2_and_leaves_nothing(version, tmp_path):
     assert not list(output.iterdir())
 
 
-@pytest.mark.parametrize("version", VERSIONS)
 def test_unwritable_output_has_exit_code_1(version, tmp_path):
     scene = write_scene(tmp_path, BOX)
     below_a_file = scene / "out"
@@ -248,7 +245,6 @@ def test_unwritable_output_has_exit_code_1(version, tmp_path):
     )
 
 
-@pytest.mark.parametrize("version", VERSIONS)
 def test_terminated_run_cleans_up_as_does_the_next_after_a_kill(version, tmp_path):
     output = tmp_path / "out"
     left = output / ".sardf-999999999-x"  # no process has this number

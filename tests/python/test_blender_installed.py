@@ -12,7 +12,6 @@ from blender_runs import (
     GRADED_SPHERE,
     HEADLESS,
     SCRIPTS,
-    VERSIONS,
     environment,
     write_scene,
 )
@@ -64,7 +63,6 @@ def for_another_python(path, target):
     return target
 
 
-@pytest.mark.parametrize("version", VERSIONS)
 def test_a_zip_for_another_python_is_refused_in_clear_words(version, zips, bare_site, tmp_path):
     wrong = for_another_python(zips[version], tmp_path / "wrong.zip")
     result = tmp_path / "result.json"
@@ -81,7 +79,6 @@ def test_a_zip_for_another_python_is_refused_in_clear_words(version, zips, bare_
         assert "use a zip that has it for cp311" in text
 
 
-@pytest.mark.parametrize("version", VERSIONS)
 def test_nothing_is_written_to_the_addons_folder(version, zips, bare_site, tmp_path):
     if os.geteuid() != 0:
         pytest.skip("a file system that cannot be written needs root")

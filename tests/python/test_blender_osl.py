@@ -105,11 +105,10 @@ def test_a_shader_has_no_normals_and_names_wrong_channels():
 
 def test_outputs_have_names_of_their_own():
     document = GRADED_SPHERE | {
-        "materials": {"red": {}, "fraction red": {}, "": {}, "color": {}},
+        "materials": {"red": {}, "fraction red": {}, "color": {}},
         "fractions": {"constant": {"red": 1}},
         "attributes": {"P": ["=x", "=y", 0], "fraction_red": "=z"},
     }
-    document["materials"].pop("")
     scene = sardf.Scene.from_json(json.dumps(document))
     _, outputs = scene.osl(["fractions", "P", "fraction_red", "base_color"])
     assert outputs == {

@@ -6,7 +6,7 @@ import os
 import numpy as np
 import pytest
 import sardf
-from blender_runs import VERSIONS, run_check
+from blender_runs import run_check
 from repository import ROOT
 from scene_json import load_document
 
@@ -14,11 +14,6 @@ ADDON = ROOT / "blender_addon"
 SCENES = [*sorted((ROOT / "scenes").glob("*.json")), ROOT / "tests/scenes/everything.json"]
 
 QUICK = [path for path in SCENES if path.stem != "cube_spiral"]  # it solves for thousands
-
-
-@pytest.fixture(scope="module", params=VERSIONS)
-def version(request):
-    return request.param
 
 
 @pytest.fixture(scope="module")

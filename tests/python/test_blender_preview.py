@@ -9,7 +9,6 @@ from blender_runs import (
     RED,
     SCRIPTS,
     STEEL,
-    VERSIONS,
     encoded,
     expected_colors,
     install_for_window,
@@ -140,7 +139,6 @@ def test_undo_another_file_and_disabling_end_the_work(window):
     assert window["seconds to disable"] < 2  # the core's own limit is 0.1 s; the machine is busy
 
 
-@pytest.mark.parametrize("version", VERSIONS)
 def test_a_mesh_stands_in_without_a_window(version, zips, tmp_path):
     scene, result_file = write_scene(tmp_path, GRADED_SPHERE), tmp_path / "result.json"
     script = SCRIPTS / "preview_stand_in.py"

@@ -3,13 +3,14 @@
 import os
 
 import pytest
-from blender_runs import SCRIPTS, VERSIONS, run_check, run_in_window
-from repository import ROOT
-
-
-@pytest.fixture(scope="module", params=VERSIONS)
-def version(request):
-    return request.param
+from blender_runs import (
+    GRADED_SPHERE,
+    SCRIPTS,
+    addon_for_window,
+    run_check,
+    run_in_window,
+    write_scene,
+)
 
 
 @pytest.fixture(scope="module")
@@ -52,6 +53,15 @@ def test_parts_turned_and_cut(version, tmp_path):
     for numbers in found.values():
         check_agrees(numbers, outline=0.998)
     assert found["cut"]["compared_pixels"] != found["whole"]["compared_pixels"]
+
+
+def test_an_object_baked_from_a_scene_file(version, tmp_path):
+    section = {"remove": {"half_space": {"normal": [0, -1, 0]}}}
+    path = write_scene(tmp_path, GRADED_SPHERE | {"sections": [section]})
+    found = run_check(version, tmp_path, "reference", "scene_file", path)
+    check_agrees(found["cut"], outline=0.997)
+    check_agrees(found["whole"], outline=0.997)
+    assert "nothing to draw" in found["gone"]["error"]
 
 
 def test_what_is_left_behind(version, tmp_path):
@@ -107,11 +117,12 @@ def test_the_command(version, tmp_path):
 @pytest.fixture(scope="module")
 def window(tmp_path_factory):
     user = tmp_path_factory.mktemp("window") / "user"
-    words = (SCRIPTS / "gui_reference.py", ROOT / "blender_addon")
+    words = (SCRIPTS / "gui_reference.py", addon_for_window(user))
     return run_in_window(*words, user_folder=user, size=(1280, 800), limit=300)
 
 
 def test_escape_stops_povray(window):
+    assert 0 < window["interrupted"] < 1
     assert window["cancelled"]
     assert not window["left"]
     assert window["seconds to cancel"] < 2  # the key's way through X11 and a busy machine included
@@ -120,6 +131,7 @@ def test_escape_stops_povray(window):
 
 def test_a_window_shows_difference_and_numbers(window):
     check_agrees(window["numbers"], median=1.0, outline=0.99)
+    assert window["drawn"]["SARDF_PT_reference"] > 1
     assert window["image"] == "sardf difference ×16"
     assert window["scene"] == "Scene"
     assert window["reference"] == window["difference"] == ["FINISHED"]

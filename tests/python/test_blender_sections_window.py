@@ -9,13 +9,13 @@ from blender_runs import (
     RED,
     SCRIPTS,
     STEEL,
+    addon_for_window,
     encoded,
     linear,
     run_in_window,
     screenshot,
     write_scene,
 )
-from repository import ROOT
 
 WIDTH, HEIGHT = 1000, 700
 # Of the ball of radius 5 in all directions the colours differ.
@@ -33,10 +33,10 @@ def expected_colors(points):
 @pytest.fixture(scope="module")
 def window(tmp_path_factory):
     folder = tmp_path_factory.mktemp("sections-window")
-    scene = write_scene(folder, SCENE)
+    scene, user = write_scene(folder, SCENE), folder / "user"
     return run_in_window(
-        SCRIPTS / "gui_sections.py", ROOT / "blender_addon", scene,
-        user_folder=folder / "user", size=(WIDTH, HEIGHT), limit=500,
+        SCRIPTS / "gui_sections.py", addon_for_window(user), scene,
+        user_folder=user, size=(WIDTH, HEIGHT), limit=500,
     )  # fmt: skip
 
 

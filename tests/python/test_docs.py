@@ -14,6 +14,8 @@ from repository import ROOT, files, name_of
 DOCUMENTS = [path for path in files(".", ".md") if not name_of(path).startswith("tests/")]
 # test_papers.py runs the commands of these at lower cost.
 PAPERS = [ROOT / f"docs/papers/{name}.md" for name in ("sardf", "biswas")]
+# test_blender_documents.py runs the Python of this in Blender.
+BLENDER = ROOT / "docs/blender.md"
 FENCE = re.compile(r"^```(\w*)[^\n]*\n(.*?)^```", re.MULTILINE | re.DOTALL)
 PRESETS = json.loads((ROOT / "CMakePresets.json").read_text())["configurePresets"]
 
@@ -26,6 +28,7 @@ def blocks(*languages: str) -> list:
         )
         for path in DOCUMENTS
         if not (path in PAPERS and "console" in languages)
+        and not (path == BLENDER and "python" in languages)
         for match in FENCE.finditer(path.read_text())
         if match[1] in languages
     ]

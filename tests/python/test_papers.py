@@ -12,15 +12,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import sardf
+from papers import biswas_page, biswas_tables, sardf_page, sardf_tables
 from PIL import Image
 from plot_scenes import csv_of, points_of
 from repository import ROOT
 from sardf.accuracy import __main__ as accuracy
 from sardf.plot.__main__ import main as plot
-
-sys.path.insert(0, str(ROOT / "scripts"))
-
-from papers import biswas_page, biswas_tables, sardf_page, sardf_tables
 
 FOLDER = ROOT / "docs/papers"
 IMAGES = FOLDER / "images"

@@ -1,7 +1,6 @@
 """The preview without Blender: the worker thread, and what the probe says."""
 
 import json
-import sys
 import threading
 import time
 
@@ -9,13 +8,9 @@ import numpy as np
 import pytest
 import sardf
 from blender_runs import GRADED_SPHERE, expected_colors, expected_fractions
-from repository import ROOT
 
-sys.path.insert(0, str(ROOT))
-try:
-    from blender_addon.preview import preview_reading, preview_sampler, preview_volume
-finally:
-    sys.path.remove(str(ROOT))
+from blender_addon.preview import preview_reading, preview_sampler, preview_volume
+
 Wish, Sampler = preview_volume.Wish, preview_sampler.Sampler
 
 LIMIT = 60.0

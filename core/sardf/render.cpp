@@ -22,6 +22,8 @@ constexpr int tile_edge = 32, most_pixels = 16384, most_samples = 8;
 constexpr double default_tolerance = 1e-4;
 // Above this error, in diagonals, beams and steps in single precision stop too early to be of use.
 constexpr double most_single_error = 1e-3;
+// Colours are taken no farther from the surface, in diagonals: about a tenth of a pixel.
+constexpr double farthest_rough = 1e-4;
 // Steps of a ray in single precision and in double before intervals are tried, which cost more
 // than hundreds of steps in blocks.
 constexpr int single_steps = 512, double_steps = 512;
@@ -74,18 +76,27 @@ Subject make_subject(const Evaluator& solid, const BoundingBox& bounds,
   return subject;
 }
 
-// The rays of the tile's pixels that may show something, each at its end; until the thread's next
-// tile.
-std::span<const Ray> cast(const Subject& subject, const Tile& tile, const RenderOptions& options,
-                          Watch& watch) {
+// The rays of the tile's pixels that may show something, each of them missed, or met somewhere
+// within the solid; until the thread's next tile.
+std::span<Ray> cast(const Subject& subject, const Tile& tile, const RenderOptions& options,
+                    Watch& watch) {
   // Large enough that every tile would have the system map new pages for it.
   thread_local std::vector<Ray> rays;
   begin_rays(subject, tile, options.width, options.height, rays, watch);
   if (subject.single) march<float>(subject, rays, single_steps, watch);
   march<double>(subject, rays, double_steps, watch);
   march_by_intervals(subject, rays, watch);
-  find_roots(subject, rays, watch);
   return rays;
+}
+
+// Those that have met the solid.
+std::span<Ray* const> met(std::span<Ray> rays) {
+  thread_local std::vector<Ray*> met;
+  met.clear();
+  for (Ray& ray : rays) {
+    if (ray.state == Ray::State::met) met.push_back(&ray);
+  }
+  return met;
 }
 
 // take(tile, subject) for all tiles, on as many threads as the options say.
@@ -122,19 +133,12 @@ class Painter {
   }
 
   void paint(const Subject& subject, const Tile& tile, Watch& watch) const {
-    const std::span<const Ray> rays = cast(subject, tile, options_, watch);
-    std::vector<Hit> hits;
-    std::vector<const Ray*> met;
-    hits.reserve(rays.size());
-    met.reserve(rays.size());
-    for (const Ray& ray : rays) {
-      if (ray.state != Ray::State::met) continue;
-      hits.push_back({ray.line.at(ray.beyond), -ray.per_length * ray.line.along});
-      met.push_back(&ray);
+    const std::span<Ray* const> rays = met(cast(subject, tile, options_, watch));
+    if (may_be_rough(subject)) {
+      paint_roughly(subject, rays, watch);
+    } else {
+      paint_exactly(subject, rays, watch);
     }
-    if (options_.look != RenderLook::flat || options_.normals) find_normals(subject, hits, watch);
-    color(subject, hits, watch);
-    for (size_t i = 0; i < hits.size(); ++i) set(met[i]->x, met[i]->y, hits[i], met[i]->beyond);
   }
 
   /// All that a pixel shows where there is nothing of the solid.
@@ -150,6 +154,53 @@ class Painter {
   }
 
  private:
+  bool may_be_rough(const Subject& subject) const {
+    const bool colors_alone =
+        options_.look == RenderLook::flat && !options_.normals && !options_.depth;
+    return colors_alone && single_does(subject, color_) &&
+           beside_rough_hits(subject) < farthest_rough * subject.bounds.diagonal();
+  }
+
+  // Where colours alone count, and are the same on both sides of the surface, no one sees where
+  // exactly it lies.
+  void paint_roughly(const Subject& subject, std::span<Ray* const> rays, Watch& watch) const {
+    thread_local std::vector<Hit> hits;
+    thread_local std::vector<Ray*> placed, others;
+    thread_local std::vector<size_t> open;
+    hits.clear();
+    placed.clear();
+    others.clear();
+    find_rough_roots(subject, rays, beside_rough_hits(subject), watch);
+    for (Ray* ray : rays) {
+      if (std::isnan(ray->trial)) {
+        others.push_back(ray);
+      } else {
+        Hit& hit = hits.emplace_back();
+        hit.at = ray->line.at(ray->trial);
+        hit.toward = -ray->per_length * ray->line.along;
+        placed.push_back(ray);
+      }
+    }
+    find_rough_colors(subject, color_, hits, open, watch);
+    for (size_t i = 0; i < hits.size(); ++i) set(placed[i]->x, placed[i]->y, hits[i], 0);
+    for (const size_t i : open) others.push_back(placed[i]);
+    paint_exactly(subject, others, watch);
+  }
+
+  void paint_exactly(const Subject& subject, std::span<Ray* const> rays, Watch& watch) const {
+    find_roots(subject, rays, watch);
+    std::vector<Hit> hits;
+    hits.reserve(rays.size());
+    for (const Ray* ray : rays) {
+      hits.push_back({ray->line.at(ray->beyond), -1.0 * normalized(ray->line.along)});
+    }
+    if (options_.look != RenderLook::flat || options_.normals) find_normals(subject, hits, watch);
+    color(subject, hits, watch);
+    for (size_t i = 0; i < hits.size(); ++i) {
+      set(rays[i]->x, rays[i]->y, hits[i], rays[i]->beyond);
+    }
+  }
+
   void color(const Subject& subject, std::vector<Hit>& hits, Watch& watch) const {
     if (options_.look == RenderLook::normals) {
       for (Hit& hit : hits) hit.color = 0.5 * (hit.normal + Vec3{1, 1, 1});
@@ -204,11 +255,16 @@ RenderedPicture render(const Scene& scene, const RenderOptions& options, const P
   rendering::check_options(options, scene.bounds());
   Image& image = picture.image;
   image = {options.width, options.height, int(picture.channels.size()), {}};
-  image.samples.reserve(size_t(image.width) * image.height * image.channels);
   const rendering::Painter painter(scene, options, image);
   const std::vector<float> behind = painter.background();
-  for (size_t i = size_t(image.width) * image.height; i > 0; --i) {
-    image.samples.insert(image.samples.end(), behind.begin(), behind.end());
+  const size_t pixels = size_t(image.width) * image.height;
+  if (std::all_of(behind.begin(), behind.end(), [](float sample) { return sample == 0; })) {
+    image.samples.resize(pixels * image.channels);  // zeros, which no one has to write
+  } else {
+    image.samples.reserve(pixels * image.channels);
+    for (size_t i = 0; i < pixels; ++i) {
+      image.samples.insert(image.samples.end(), behind.begin(), behind.end());
+    }
   }
   const Evaluator drawn(scene.drawn());
   rendering::for_tiles(drawn, scene.bounds(), options, progress,
@@ -225,9 +281,10 @@ std::vector<double> render_depths(const Evaluator& solid, const BoundingBox& bou
   rendering::for_tiles(
       solid, bounds, options, progress,
       [&](const auto& subject, const rendering::Tile& tile, rendering::Watch& watch) {
-        for (const auto& ray : rendering::cast(subject, tile, options, watch)) {
-          if (ray.state != rendering::Ray::State::met) continue;
-          depths[size_t(ray.y) * options.width + ray.x] = ray.beyond;
+        const auto rays = rendering::met(rendering::cast(subject, tile, options, watch));
+        rendering::find_roots(subject, rays, watch);
+        for (const rendering::Ray* ray : rays) {
+          depths[size_t(ray->y) * options.width + ray->x] = ray->beyond;
         }
       });
   return depths;

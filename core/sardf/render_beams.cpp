@@ -97,23 +97,73 @@ std::vector<Beam> split_beams(const std::vector<Beam>& beams, double end) {
   return parts;
 }
 
-Ray make_ray(const Subject& subject, int x, int y, double clear) {
-  Ray ray;
-  ray.x = x;
-  ray.y = y;
-  ray.line = subject.rays.through(x + 0.5, y + 0.5);
-  ray.per_length = 1 / std::sqrt(dot(ray.line.along, ray.line.along));
-  const Stretch in_box = stretch_in(ray.line, subject.bounds);
-  ray.end = in_box.end;
-  ray.tolerance = std::max(subject.tolerance * ray.per_length, least_tolerance * ray.end);
-  ray.clear = std::max(clear, in_box.begin);
-  if (ray.clear <= ray.end) {
-    ray.clear = subject.slopes.clear_until(ray.line, ray.clear, std::nan(""));
+// The stretches of a row's rays in the box as arrays, which the compiler makes SIMD of: what
+// stretch_in says, but that a ray which only touches the box may have none.
+struct Row {
+  static constexpr int capacity = smallest_edge;
+  double from[3][capacity], along[3][capacity], begin[capacity], end[capacity];
+
+  void set(int i, const Line& line) {
+    for (int axis = 0; axis < 3; ++axis) {
+      from[axis][i] = line.from[axis];
+      along[axis][i] = line.along[axis];
+    }
   }
+  void stretch(const BoundingBox& box) {
+    std::fill_n(begin, capacity, 0.0);
+    std::fill_n(end, capacity, infinity);
+    for (int axis = 0; axis < 3; ++axis) {
+      const double lo = box.lo[axis], hi = box.hi[axis];
+      for (int i = 0; i < capacity; ++i) {
+        // A line that moves less than this has left no box along the axis where all numbers end.
+        const double a = std::abs(along[axis][i]) > 1e-280 ? along[axis][i] : 1e-280;
+        const double inverse = 1 / a;
+        const double first = (lo - from[axis][i]) * inverse, last = (hi - from[axis][i]) * inverse;
+        begin[i] = std::max(begin[i], std::min(first, last));
+        end[i] = std::min(end[i], std::max(first, last));
+      }
+    }
+  }
+};
+
+// Finishes a ray that has pixel, line, per_length and end; false where it is clear to its end.
+bool begin_ray(const Subject& subject, double clear, Ray& ray) {
+  ray.clear = clear;
+  if (!(ray.clear <= ray.end)) return false;
+  ray.clear = subject.slopes.clear_until(ray.line, ray.clear, std::nan(""));
+  ray.tolerance = std::max(subject.tolerance * ray.per_length, least_tolerance * ray.end);
   ray.trial = std::min(ray.clear + ray.tolerance, ray.end);
   ray.before = ray.before_value = std::nan("");
   ray.beyond = ray.beyond_value = infinity;
-  return ray;
+  return ray.clear <= ray.end;
+}
+
+// Appends the rays of the beam's pixels.
+void append_rays(const Subject& subject, const Beam& beam, int width, int height,
+                 std::vector<Ray>& rays) {
+  const int left = int(beam.x - 0.5 * beam.edge), top = int(beam.y - 0.5 * beam.edge);
+  const int right = std::min(width, left + int(beam.edge));
+  const int bottom = std::min(height, top + int(beam.edge));
+  // A bound for all of them does: over a few pixels it hardly changes.
+  const double per_length = subject.rays.shortest_step(beam.x, beam.y, beam.edge);
+  Row row{};
+  for (int y = top; y < bottom; ++y) {
+    for (int x = left; x < right; ++x) row.set(x - left, subject.rays.through(x + 0.5, y + 0.5));
+    row.stretch(subject.bounds);
+    for (int i = 0; i < right - left; ++i) {
+      if (row.begin[i] > row.end[i]) continue;
+      Ray& ray = rays.emplace_back();
+      ray.x = left + i;
+      ray.y = y;
+      for (int axis = 0; axis < 3; ++axis) {
+        ray.line.from[axis] = row.from[axis][i];
+        ray.line.along[axis] = row.along[axis][i];
+      }
+      ray.per_length = per_length;
+      ray.end = row.end[i];
+      if (!begin_ray(subject, std::max(beam.clear, row.begin[i]), ray)) rays.pop_back();
+    }
+  }
 }
 
 }  // namespace
@@ -135,15 +185,7 @@ void begin_rays(const Subject& subject, const Tile& tile, int width, int height,
   rays.clear();
   for (const Beam& beam : beams) {
     if (beam.clear >= depths.end) continue;
-    const int left = int(beam.x - 0.5 * beam.edge), top = int(beam.y - 0.5 * beam.edge);
-    const int right = std::min(width, left + int(beam.edge));
-    const int bottom = std::min(height, top + int(beam.edge));
-    for (int y = top; y < bottom; ++y) {
-      for (int x = left; x < right; ++x) {
-        const Ray ray = make_ray(subject, x, y, beam.clear);
-        if (ray.clear <= ray.end) rays.push_back(ray);
-      }
-    }
+    append_rays(subject, beam, width, height, rays);
   }
 }
 

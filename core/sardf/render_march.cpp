@@ -29,7 +29,7 @@ double next_trial(const Ray& ray, double reach, double former, double former_val
   const double surest = surest_trial(ray);
   if (!(former_value < 0) || !(reach > 0)) return surest;
   const double depth = -ray.before_value;
-  const double share = (-former_value - depth) / (ray.before - former) * reach / depth;
+  const double share = (-former_value - depth) * reach / ((ray.before - former) * depth);
   const double step = caution * 2 * reach / (1 + std::clamp(share, -0.5, 1.0));
   const double guess = ray.before + step;
   return guess > ray.before + least_gain * reach + ray.tolerance && guess < ray.end ? guess
@@ -71,8 +71,8 @@ template <class T>
 void march(const Subject& subject, std::span<Ray> rays, int most_steps, Watch& watch) {
   constexpr bool decides = std::is_same_v<T, double>;
   const double error = decides ? subject.error_double : subject.error_single;
-  std::vector<Ray*> active;
-  active.reserve(rays.size());
+  thread_local std::vector<Ray*> active;
+  active.clear();
   for (Ray& ray : rays) {
     if (decides && ray.state == State::unsure) ray.state = State::on_its_way;
     if (ray.state == State::on_its_way) active.push_back(&ray);

@@ -1,6 +1,7 @@
 #include "sardf/render_rays.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sardf::rendering {
 
@@ -29,6 +30,17 @@ Spread Rays::spread(double x, double y, double edge) const {
   if (!perspective_) return {corner, 0, 0};
   const Vec3 along = through(x, y).along;
   return {0, corner, std::abs(dot(along, u)) + std::abs(dot(along, v))};
+}
+
+double Rays::shortest_step(double x, double y, double edge) const {
+  if (!perspective_) return 1 / norm(view_);
+  double longest = 0;
+  for (const double u : {x - 0.5 * edge, x + 0.5 * edge}) {
+    for (const double v : {y - 0.5 * edge, y + 0.5 * edge}) {
+      longest = std::max(longest, norm(through(u, v).along));
+    }
+  }
+  return 1 / longest;
 }
 
 Stretch Rays::depths(const BoundingBox& box) const {

@@ -32,6 +32,8 @@ class Rays {
   Line through(double x, double y) const;
   /// The spread of the square of this edge, in pixels, around the place.
   Spread spread(double x, double y, double edge) const;
+  /// The least depth that a unit of length makes along any ray of such a square.
+  double shortest_step(double x, double y, double edge) const;
   /// The depths >= 0 between which the box lies.
   Stretch depths(const BoundingBox& box) const;
   /// Unit vectors of the picture: to its right, its top, and into it.

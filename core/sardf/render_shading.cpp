@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace sardf::rendering {
 
@@ -123,47 +124,38 @@ constexpr double equal_colors = 0.25 / 255;
 // Coordinates in single precision tell points apart well enough up to so many diagonals.
 constexpr double far = 16;
 
-// What has no formula is evaluated in double in any case: twice would be a waste.
-bool single_does(const Subject& subject, const Evaluator& color) {
-  for (const Instruction& i : color.tape().instructions()) {
-    if (!i.operation->has_formula()) return false;
-  }
-  const BoundingBox& box = subject.bounds;
-  return norm(box.lo) + norm(box.hi) < far * box.diagonal();
-}
-
 double shown(double channel) { return channel > 0 ? std::min(channel, 1.0) : 0; }
 
-// The colours that single precision gives; leaves in `open` those that need double.
-void find_single_colors(const Subject& subject, const Evaluator& color, std::vector<Hit*>& open,
-                        Watch& watch) {
+// The colours that single precision gives so far before and behind the surface; the numbers of
+// those that need double come into `open`.
+void find_single_colors(const Evaluator& color, std::span<Hit> hits, double aside,
+                        std::vector<size_t>& open, Watch& watch) {
   constexpr size_t half = Block<float>::capacity / 2;
-  const double aside = beside * subject.bounds.diagonal();
   thread_local Block<float> block;
   thread_local float channels[3][Block<float>::capacity];
   float* const out[3] = {channels[0], channels[1], channels[2]};
-  std::vector<Hit*> differing;
-  for (size_t first = 0; first < open.size(); first += half) {
+  open.clear();
+  for (size_t first = 0; first < hits.size(); first += half) {
     watch.check();
-    const size_t n = std::min(half, open.size() - first);
+    const size_t n = std::min(half, hits.size() - first);
     for (size_t i = 0; i < n; ++i) {
-      const Hit& hit = *open[first + i];
-      block.set(i, hit.at + aside * hit.toward);
-      block.set(n + i, hit.at - aside * hit.toward);
+      const Hit& hit = hits[first + i];
+      const Vec3 way = aside * hit.toward;
+      block.set(i, hit.at + way);
+      block.set(n + i, hit.at - way);
     }
     color.block(block.xyz[0], block.xyz[1], block.xyz[2], 2 * n, out);
     for (size_t i = 0; i < n; ++i) {
-      Hit& hit = *open[first + i];
+      Hit& hit = hits[first + i];
       bool equal = true;
       for (int c = 0; c < 3; ++c) {
         const double before = channels[c][i], behind = channels[c][n + i];
         equal = equal && std::abs(before - behind) <= equal_colors;
         hit.color[c] = shown(0.5 * (before + behind));
       }
-      if (!equal) differing.push_back(&hit);
+      if (!equal) open.push_back(first + i);
     }
   }
-  open = std::move(differing);
 }
 
 }  // namespace
@@ -190,21 +182,44 @@ void find_normals(const Subject& subject, std::span<Hit> hits, Watch& watch) {
   }
 }
 
+// What has no formula is evaluated in double in any case: twice would be a waste.
+bool single_does(const Subject& subject, const Evaluator& color) {
+  for (const Instruction& i : color.tape().instructions()) {
+    if (!i.operation->has_formula()) return false;
+  }
+  const BoundingBox& box = subject.bounds;
+  return norm(box.lo) + norm(box.hi) < far * box.diagonal();
+}
+
+double beside_rough_hits(const Subject& subject) {
+  // Far enough that rounding does not hide on which side of the surface a place lies.
+  return beside * subject.bounds.diagonal() + 4 * subject.error_single;
+}
+
+void find_rough_colors(const Subject& subject, const Evaluator& color, std::span<Hit> hits,
+                       std::vector<size_t>& open, Watch& watch) {
+  find_single_colors(color, hits, beside_rough_hits(subject), open, watch);
+}
+
 void find_colors(const Subject& subject, const Evaluator& color, std::span<Hit> hits,
                  Watch& watch) {
-  std::vector<Hit*> open;
-  for (Hit& hit : hits) open.push_back(&hit);
-  if (single_does(subject, color)) find_single_colors(subject, color, open, watch);
+  std::vector<size_t> open;
+  if (single_does(subject, color)) {
+    find_single_colors(color, hits, beside * subject.bounds.diagonal(), open, watch);
+  } else {
+    open.resize(hits.size());
+    std::iota(open.begin(), open.end(), size_t(0));
+  }
   thread_local Block<double> block;
   thread_local double channels[3][Block<double>::capacity];
   double* const out[3] = {channels[0], channels[1], channels[2]};
   for (size_t first = 0; first < open.size(); first += block.capacity) {
     watch.check();
     const size_t n = std::min(block.capacity, open.size() - first);
-    for (size_t i = 0; i < n; ++i) block.set(i, open[first + i]->at);
+    for (size_t i = 0; i < n; ++i) block.set(i, hits[open[first + i]].at);
     color.block(block.xyz[0], block.xyz[1], block.xyz[2], n, out);
     for (size_t i = 0; i < n; ++i) {
-      for (int c = 0; c < 3; ++c) open[first + i]->color[c] = shown(channels[c][i]);
+      for (int c = 0; c < 3; ++c) hits[open[first + i]].color[c] = shown(channels[c][i]);
     }
   }
 }

@@ -51,7 +51,7 @@ struct Ray {
   };
   int x, y;  // of its pixel, in the picture
   Line line;
-  double per_length;  // depth by length along the ray
+  double per_length;  // at most the depth that a unit of length along the ray makes
   double end;         // the ray leaves the bounds there
   double clear;       // nothing of the solid lies before this depth
   double tolerance;   // as depth
@@ -81,7 +81,13 @@ void march(const Subject& subject, std::span<Ray> rays, int most_steps, Watch& w
 /// stretches clear where steps are short, or where no bound of the slope is known.
 void march_by_intervals(const Subject& subject, std::span<Ray> rays, Watch& watch);
 
-/// Moves `beyond` of the rays that have met the solid onto its surface, in double.
-void find_roots(const Subject& subject, std::span<Ray> rays, Watch& watch);
+/// Moves `beyond` of rays that have met the solid onto its surface, in double.
+void find_roots(const Subject& subject, std::span<Ray* const> rays, Watch& watch);
+
+/// For pictures without depth, in single precision: of rays that have met the solid, `trial`
+/// becomes a depth with the surface proven to lie less than `aside` along the ray before or behind
+/// it; NaN where that is not so at the first try. The bracket of `before` and `beyond` stays.
+void find_rough_roots(const Subject& subject, std::span<Ray* const> rays, double aside,
+                      Watch& watch);
 
 }  // namespace sardf::rendering

@@ -52,6 +52,50 @@ TEST(RenderPictures, SectionsShowTheMaterialsInside) {
   EXPECT_NEAR(blue * pixel * pixel, 3.14159, 0.05);
 }
 
+// A skin thinner than the way from the surface at which colours are taken in single precision, and
+// with that precision's rounding: the two sides' colours differ, and neither nor their mean counts.
+TEST(RenderPictures, AThinSkinKeepsItsColor) {
+  const Scene scene(parse_scene(R"scene({"sardf": 1, "solid": {"box": {"size": [4, 4, 4]}},
+    "materials": {"red": {"color": [1, 0, 0]}, "blue": {"color": [0, 0.25, 1]}},
+    "fractions": {"functions": {"red": "=step(0, 1.99998 - z)", "blue": "rest"}}})scene",
+                                ""));
+  RenderOptions options = orthographic(options_of(padded({2, 2, 2}), {0, 0, -1}), 3);
+  const RenderedPicture picture = render(scene, options);
+  for (int y = 0; y < options.height; ++y) {
+    for (int x = 0; x < options.width; ++x) {
+      const float* p = picture.image.at(x, y);
+      ASSERT_EQ(p[3], 1) << x << ", " << y;
+      ASSERT_EQ(p[0], 0) << x << ", " << y;
+      ASSERT_NEAR(p[1], 0.25, 1e-6);
+    }
+  }
+}
+
+// Without depth the surface is found in single precision only, where that does.
+TEST(RenderPictures, DepthDoesNotChangeColors) {
+  for (const char* name : {"cad_plate_cut", "cad_plate_stripes", "lined_bore"}) {
+    const Scene scene(read_scene(source_folder() / "scenes" / (std::string(name) + ".json")));
+    RenderOptions options;
+    options.width = 133;
+    options.height = 97;
+    options.camera = scene_camera(scene, options.width, options.height);
+    const RenderedPicture rough = render(scene, options);
+    options.depth = true;
+    const RenderedPicture exact = render(scene, options);
+    int shown = 0;
+    for (int y = 0; y < options.height; ++y) {
+      for (int x = 0; x < options.width; ++x) {
+        const float *p = rough.image.at(x, y), *q = exact.image.at(x, y);
+        ASSERT_EQ(p[3], q[3]) << name << ": " << x << ", " << y;
+        for (int c = 0; c < 3; ++c)
+          ASSERT_NEAR(p[c], q[c], 1.0 / 255) << name << ": " << x << ", " << y;
+        shown += p[3] > 0 ? 1 : 0;
+      }
+    }
+    EXPECT_GT(shown, 1000) << name;
+  }
+}
+
 TEST(RenderPictures, LooksAndBackgrounds) {
   const Scene scene = scene_of("");
   RenderOptions options = options_of(padded({2, 2, 2}));

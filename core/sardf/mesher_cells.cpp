@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <memory>
 #include <unordered_set>
 
 #include "sardf/mesher_blocks.hpp"
@@ -135,8 +136,18 @@ class Signs {
   std::array<uint16_t, side * side> rows_{};
 };
 
-void add_cells(const Signs& signs, const float* values, const Index3& first, Sampled& to,
-               std::vector<Edge>& edges) {
+// The cells with surface in a block and its crossed edges, in room for the most that there can be.
+struct Found {
+  std::array<Corners, block_cells * block_cells * block_cells> corners;
+  std::array<Edge, 3 * block_cells * block_cells * block_cells> edges;
+  std::array<Crossing, 3 * block_cells * block_cells * block_cells> crossings;
+  uint32_t cells = 0;
+  size_t crossed = 0;
+};
+
+void find_in_block(const Signs& signs, const float* values, const Index3& first, Found& to) {
+  to.cells = 0;
+  to.crossed = 0;
   for (int z = 0; z < block_cells; ++z) {
     for (int y = 0; y < block_cells; ++y) {
       for (int row = signs.mixed(y, z); row != 0; row &= row - 1) {
@@ -149,21 +160,22 @@ void add_cells(const Signs& signs, const float* values, const Index3& first, Sam
           for (int c = 0; c < 8; ++c) corner[c] = at[sample_index(c & 1, c >> 1 & 1, c >> 2)];
           joined = joined_faces(inside, corner);
         }
-        const uint32_t cell = uint32_t(to.corners.size());
-        to.corners.push_back({inside, joined});
+        to.corners[to.cells] = {inside, joined};
         constexpr int step[3] = {1, side, side * side};
         for (uint8_t axis = 0; axis < 3; ++axis) {
           const bool leaves = inside & 1, ends_inside = (inside >> (1 << axis) & 1) != 0;
           if (leaves == ends_inside) continue;
-          edges.push_back({{first[0] + x, first[1] + y, first[2] + z}, at[0], at[step[axis]]});
-          to.crossings.push_back({cell, 0, {}, axis, leaves});
+          to.edges[to.crossed] = {
+              {first[0] + x, first[1] + y, first[2] + z}, at[0], at[step[axis]]};
+          to.crossings[to.crossed++] = {to.cells, 0, {}, axis, leaves};
         }
+        ++to.cells;
       }
     }
   }
 }
 
-Sampled sample(const Field& field, const Grid& grid, const Index3& block) {
+Sampled sample(const Field& field, const Grid& grid, const Index3& block, Found& found) {
   std::array<float, samples> values;
   if (grid.single) {
     evaluate_samples<float>(field, grid, block, values.data());
@@ -173,22 +185,20 @@ Sampled sample(const Field& field, const Grid& grid, const Index3& block) {
   Sampled result;
   result.block.place = block;
   const Signs signs(values.data());
-  size_t count = 0;
+  uint64_t any = 0;
   for (int z = 0; z < block_cells; ++z) {
     for (int y = 0; y < block_cells; ++y) {
       result.block.occupied[z] |= uint64_t(signs.mixed(y, z)) << 8 * y;
     }
-    count += size_t(std::popcount(result.block.occupied[z]));
+    any |= result.block.occupied[z];
   }
-  if (count == 0) return result;
-  result.corners.reserve(count);
-  result.crossings.reserve(count + count / 2);
-  std::vector<Edge> edges;
-  edges.reserve(count + count / 2);
+  if (any == 0) return result;
   const Index3 first{block[0] * block_cells, block[1] * block_cells, block[2] * block_cells};
-  add_cells(signs, values.data(), first, result, edges);
-  locate(field, grid, field.program(block, block_level), edges.data(), edges.size(),
-         result.crossings.data());
+  find_in_block(signs, values.data(), first, found);
+  locate(field, grid, field.program(block, block_level), found.edges.data(), found.crossed,
+         found.crossings.data());
+  result.corners.assign(found.corners.data(), found.corners.data() + found.cells);
+  result.crossings.assign(found.crossings.data(), found.crossings.data() + found.crossed);
   result.neighbours = signs.neighbours();
   shorten_parts(field, block, result.block.occupied, result.programs);
   return result;
@@ -279,8 +289,9 @@ Cells find_cells(Field& field, const Grid& grid, size_t memory_limit, Work& work
   // to it. Such a block is sampled as well, so that no face lacks a vertex.
   while (!blocks.empty()) {
     std::vector<Sampled> parts(blocks.size());
-    work.run(blocks.size(), 4, [&](size_t first, size_t last) {
-      for (size_t i = first; i < last; ++i) parts[i] = sample(field, grid, blocks[i]);
+    work.run(blocks.size(), 8, [&](size_t first, size_t last) {
+      const auto found = std::make_unique_for_overwrite<Found>();
+      for (size_t i = first; i < last; ++i) parts[i] = sample(field, grid, blocks[i], *found);
     });
     append(parts, cells, work);
     std::vector<Index3> missing;

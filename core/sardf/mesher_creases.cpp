@@ -11,9 +11,9 @@ namespace {
 
 constexpr double crease_angle = 22 * std::numbers::pi / 180;
 
-// An edge of a face: its vertices, smaller first, and the uses there.
+// An edge of a face: its vertices, smaller first, in one number, and the uses there.
 struct FaceEdge {
-  std::array<uint32_t, 2> vertices;
+  uint64_t vertices;
   std::array<uint32_t, 2> uses;
 };
 
@@ -21,13 +21,19 @@ double angle_between(const Vec3& a, const Vec3& b) {
   return std::atan2(norm(cross(a, b)), dot(a, b));
 }
 
-std::vector<FaceEdge> edges_of(const Mesh& mesh, const std::vector<uint32_t>& faces) {
+// Those with a sharp vertex, sorted: an edge of two smooth vertices has one normal at either end
+// and is no crease.
+std::vector<FaceEdge> edges_of(const Mesh& mesh, const Vertices& vertices,
+                               const std::vector<uint32_t>& faces) {
   std::vector<FaceEdge> edges;
   for (const uint32_t face : faces) {
+    std::array<bool, 4> smooth;
+    for (size_t k = 0; k < 4; ++k) smooth[k] = vertices.is_smooth(mesh.faces[face][k]);
     for (uint32_t k = 0; k < 4; ++k) {
+      if (smooth[k] && smooth[(k + 1) % 4]) continue;
       uint32_t a = 4 * face + k, b = 4 * face + (k + 1) % 4;
       if (mesh.faces[face][a % 4] > mesh.faces[face][b % 4]) std::swap(a, b);
-      edges.push_back({{mesh.faces[face][a % 4], mesh.faces[face][b % 4]}, {a, b}});
+      edges.push_back({uint64_t(mesh.faces[face][a % 4]) << 32 | mesh.faces[face][b % 4], {a, b}});
     }
   }
   std::sort(edges.begin(), edges.end(), [](const FaceEdge& a, const FaceEdge& b) {
@@ -38,10 +44,9 @@ std::vector<FaceEdge> edges_of(const Mesh& mesh, const std::vector<uint32_t>& fa
 
 }  // namespace
 
-std::vector<std::array<uint32_t, 2>> find_creases(const Mesh& mesh,
+std::vector<std::array<uint32_t, 2>> find_creases(const Mesh& mesh, const Vertices& vertices,
                                                   const std::vector<uint32_t>& sharp_faces) {
-  // An edge of two smooth vertices has one normal at either end and is no crease.
-  const std::vector<FaceEdge> edges = edges_of(mesh, sharp_faces);
+  const std::vector<FaceEdge> edges = edges_of(mesh, vertices, sharp_faces);
   std::vector<std::array<uint32_t, 2>> creases;
   for (size_t i = 0; i + 1 < edges.size(); ++i) {
     const FaceEdge &a = edges[i], &b = edges[i + 1];
@@ -50,7 +55,8 @@ std::vector<std::array<uint32_t, 2>> find_creases(const Mesh& mesh,
     for (int end = 0; end < 2; ++end) {
       sum += angle_between(mesh.corner_normals[a.uses[end]], mesh.corner_normals[b.uses[end]]);
     }
-    if (sum > 2 * crease_angle) creases.push_back(a.vertices);
+    if (sum > 2 * crease_angle)
+      creases.push_back({uint32_t(a.vertices >> 32), uint32_t(a.vertices)});
   }
   return creases;
 }

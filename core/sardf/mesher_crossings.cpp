@@ -145,16 +145,13 @@ class Edges {
       points_.set(k, p);
     }
     field_.differentiate(program_, points_, n);
+    inverse_lengths(points_, n, inverse_.data());
     for (size_t k = 0; k < n; ++k) {
-      const double x = double(points_.gradient[0][k]), y = double(points_.gradient[1][k]),
-                   z = double(points_.gradient[2][k]), square = x * x + y * y + z * z;
-      by_[k] = square > 0 && square < infinity ? -1 / std::sqrt(square) : 0;
-    }
-    for (size_t k = 0; k < n; ++k) {
+      const T inverse = inverse_[k];
       for (size_t axis = 0; axis < 3; ++axis) {
         // Where there is no normal the gradient may be no number.
-        const double normal = by_[k] * double(points_.gradient[axis][k]);
-        crossings_[which[k]].normal[axis] = by_[k] == 0 ? 0 : float(normal);
+        const T normal = -inverse * points_.gradient[axis][k];
+        crossings_[which[k]].normal[axis] = inverse == 0 ? 0 : float(normal);
       }
     }
   }
@@ -171,7 +168,7 @@ class Edges {
   const Edge* edges_;
   Crossing* crossings_;
   Points<T> points_;
-  std::array<double, capacity> by_;  // what the gradients become normals by
+  std::array<T, capacity> inverse_;  // lengths of gradients
 };
 
 template <class T>

@@ -85,6 +85,26 @@ inline Vec3 outward_normal(const Vec3& gradient) {
   return (-1 / length) * gradient;
 }
 
+/// One by the length of each of n gradients; 0 where that is 0 or not finite.
+template <class T>
+void inverse_lengths(const Points<T>& points, size_t n, T* inverse) {
+  // Squares of shorter and longer ones may be rounded away.
+  constexpr T least = T(1e-30), most = T(1e30);
+  bool all = true;
+  for (size_t i = 0; i < n; ++i) {
+    const T x = points.gradient[0][i], y = points.gradient[1][i], z = points.gradient[2][i];
+    const T square = x * x + y * y + z * z;
+    all &= (square > least) & (square < most);
+    inverse[i] = 1 / std::sqrt(square);
+  }
+  if (all) return;
+  for (size_t i = 0; i < n; ++i) {
+    const double length = norm(points.gradient_at(i));
+    const bool good = length > 0 && length < infinity && T(1 / length) < T(infinity);
+    inverse[i] = good ? T(1 / length) : 0;
+  }
+}
+
 /// From a point to the surface by one step of Newton's method; 0 where there is no gradient.
 inline Vec3 newton_step(double value, const Vec3& gradient) {
   const double squared = dot(gradient, gradient);

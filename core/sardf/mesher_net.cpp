@@ -152,7 +152,7 @@ Net build_net(Cells& cells, Work& work) {
 }
 
 BoundingBox Places::room(uint32_t vertex) const {
-  return room_of(grid_, cells_.at[net_.cell[vertex]], net_.sides[vertex]);
+  return room_of(grid_, grid_.point(cells_.at[net_.cell[vertex]]), net_.sides[vertex]);
 }
 
 bool Places::is_in_cell(uint32_t vertex, const Vec3& point) const {

@@ -102,24 +102,13 @@ void fill_normals(Mesh& mesh, uint32_t f) {
 
 void finish_faces(const Field& field, const Grid& grid, const Places& places,
                   const Vertices& vertices, Mesh& mesh, Work& work) {
-  resize_large(mesh.corner_normals, 4 * mesh.faces.size());
-  const auto copy_normals = [&](size_t f) {
-    bool all_smooth = true;
-    for (size_t k = 0; k < 4; ++k) {
-      const uint32_t v = mesh.faces[f][k];
-      mesh.corner_normals[4 * f + k] = vertices.normal[v];
-      all_smooth = all_smooth && !vertices.is_sharp[v];
-    }
-    return all_smooth;
-  };
+  resize_on_all_threads(mesh.corner_normals, 4 * mesh.faces.size());
   work.run(mesh.faces.size(), 1024, [&](size_t first, size_t last) {
-    for (size_t f = first; f < last; ++f) {
-      if (copy_normals(f)) choose_diagonal(mesh, f);
-    }
+    finish_smooth_faces(grid, vertices, mesh, first, last);
   });
   find_sharp_normals(field, grid, places, vertices, mesh, work);
   const std::vector<uint32_t> faces = faces_at(vertices.sharp, places);
-  mesh.creases = find_creases(mesh, faces);
+  mesh.creases = find_creases(mesh, vertices, faces);
   work.run(faces.size(), 1024, [&](size_t first, size_t last) {
     for (size_t i = first; i < last; ++i) {
       fill_normals(mesh, faces[i]);

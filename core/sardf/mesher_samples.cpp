@@ -13,6 +13,8 @@ constexpr double same_side = 0.9659;
 }  // namespace
 
 Samples::Samples(const Places& places, std::span<const uint32_t> vertices) : vertices_(vertices) {
+  first_.reserve(vertices.size() + 1);
+  samples_.reserve(5 * vertices.size());
   for (const uint32_t v : vertices) {
     first_.push_back(uint32_t(samples_.size()));
     for (const uint32_t use : places.uses(v)) {

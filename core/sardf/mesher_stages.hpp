@@ -6,6 +6,8 @@
 // two axes e = (d + 1) % 3 and g = (d + 2) % 3, is number 4 d + (side in e) + 2 (side in g).
 #pragma once
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -142,10 +144,31 @@ class Places {
 
 struct Vertices {
   std::vector<Vec3> at;
-  Large<Vec3> normal;           // unit outward normals; 0 where there is none, or several
-  Large<uint8_t> is_sharp;      // needs the work of mesher_features.cpp
-  std::vector<uint32_t> sharp;  // those vertices, ascending
+  /// Unit outward normals of the smooth ones; 0 for the sharp ones, which may have several.
+  Large<std::array<float, 3>> normal;
+  std::vector<uint32_t> sharp;  // those that need the work of mesher_features.cpp, ascending
+  std::vector<uint32_t> apart;  // smooth ones that may lie out of their cell or share it, ascending
+
+  bool is_smooth(uint32_t v) const {
+    const auto& n = normal[v];
+    return (n[0] != 0) | (n[1] != 0) | (n[2] != 0);
+  }
 };
+
+/// Makes an empty vector n elements long. Its pages come into being on all threads: making them is
+/// most of the time that this takes.
+template <class T>
+void resize_on_all_threads(std::vector<T>& empty, size_t n) {
+  constexpr size_t page = size_t(4) << 10, pages = 512;
+  empty.reserve(n);
+  use_large_pages(empty.data(), n * sizeof(T));
+  auto* bytes = reinterpret_cast<volatile char*>(empty.data());
+  const size_t all = (n * sizeof(T) + page - 1) / page;
+  tbb::parallel_for(size_t(0), (all + pages - 1) / pages, [&](size_t part) {
+    for (size_t i = part * pages; i < std::min(all, (part + 1) * pages); ++i) bytes[i * page] = 0;
+  });
+  empty.resize(n);
+}
 
 /// Whether the face on side s along the axis has two inside corners across from each other.
 constexpr bool is_ambiguous(uint8_t inside, int axis, int s) {
@@ -207,14 +230,14 @@ inline uint32_t crossing_at(const Cells& cells, uint32_t cell, int axis) {
 /// polygon that is not turned over: the piece's edges at a side of the cell keep the vertex from
 /// passing that side. Past a side without such an edge the vertex may follow the tip of a ridge
 /// that pokes out of the cell.
-inline BoundingBox room_of(const Grid& grid, const Index3& cell, uint8_t sides) {
+/// `lo`: where corner 0 of the cell lies.
+inline BoundingBox room_of(const Grid& grid, const Vec3& lo, uint8_t sides) {
   constexpr double margin = 1e-4;
+  constexpr double below[2] = {-1, margin}, above[2] = {2, 1 - margin};
   BoundingBox room;
   for (int axis = 0; axis < 3; ++axis) {
-    const double lo = grid.coordinate(axis, cell[axis]);
-    const bool at_lo = sides >> (2 * axis) & 1, at_hi = sides >> (2 * axis + 1) & 1;
-    room.lo[axis] = lo + (at_lo ? margin : -1) * grid.cell;
-    room.hi[axis] = lo + (at_hi ? 1 - margin : 2) * grid.cell;
+    room.lo[axis] = lo[axis] + below[sides >> (2 * axis) & 1] * grid.cell;
+    room.hi[axis] = lo[axis] + above[sides >> (2 * axis + 1) & 1] * grid.cell;
   }
   return room;
 }
@@ -258,8 +281,12 @@ void separate(const Grid& grid, const Net& net, const Places& places, Vertices& 
 void finish_faces(const Field& field, const Grid& grid, const Places& places,
                   const Vertices& vertices, Mesh& mesh, Work& work);
 /// `sharp_faces`: those at sharp vertices.
-std::vector<std::array<uint32_t, 2>> find_creases(const Mesh& mesh,
+std::vector<std::array<uint32_t, 2>> find_creases(const Mesh& mesh, const Vertices& vertices,
                                                   const std::vector<uint32_t>& sharp_faces);
+/// Sets the corner normals of faces at smooth vertices and chooses the diagonals of those that have
+/// only such ones, from the face `first` to `last`.
+void finish_smooth_faces(const Grid& grid, const Vertices& vertices, Mesh& mesh, size_t first,
+                         size_t last);
 /// Turns a quad so that the triangles that its first and third corner part agree better with the
 /// corner normals than those of the other diagonal.
 void choose_diagonal(Mesh& mesh, size_t face);

@@ -1,7 +1,7 @@
 // Vertices that touch, though they belong to different pieces of surface.
+#include <algorithm>
 #include <bit>
-#include <map>
-#include <memory>
+#include <iterator>
 
 #include "sardf/mesher_stages.hpp"
 
@@ -20,74 +20,84 @@ Vec3 middle_of_crossings(const Places& places, uint32_t vertex) {
   return (1.0 / uses.count) * sum;
 }
 
-// Numbers of which most are not known, found with few looks into a tree.
-class RoundedPlaces {
+// Tells of most places that they are none of those that were added.
+class Filter {
  public:
   void add(const Rounded& place) {
-    places_[place] = 0;
     const uint32_t k = hash(place);
-    filter_[k / 64] |= uint64_t(1) << k % 64;
+    bits_[k / 64] |= uint64_t(1) << k % 64;
   }
   bool may_contain(const Rounded& place) const {
     const uint32_t k = hash(place);
-    return filter_[k / 64] >> k % 64 & 1;
-  }
-  int* find(const Rounded& place) {
-    const auto found = places_.find(place);
-    return found == places_.end() ? nullptr : &found->second;
+    return bits_[k / 64] >> k % 64 & 1;
   }
 
  private:
-  static constexpr int bits = 16;
+  static constexpr int size = 20;
   static uint32_t hash(const Rounded& place) {
     uint32_t h = 0;
     // 0 and -0 are equal.
     for (const float x : place) h = (h ^ std::bit_cast<uint32_t>(x + 0.0f)) * 0x9E3779B1u;
-    return h >> (32 - bits);
+    return h >> (32 - size);
   }
 
-  std::map<Rounded, int> places_;  // how many vertices are there
-  std::array<uint64_t, (1 << bits) / 64> filter_{};
+  std::vector<uint64_t> bits_ = std::vector<uint64_t>((1 << size) / 64);
 };
+
+// The vertices at places in the filter.
+std::vector<uint32_t> vertices_at(const Filter& filter, const Vertices& vertices, Work& work) {
+  constexpr size_t grain = 16384;
+  const size_t count = vertices.at.size();
+  std::vector<std::vector<uint32_t>> found((count + grain - 1) / grain);
+  work.run(count, grain, [&](size_t first, size_t last) {
+    for (size_t v = first; v < last; ++v) {
+      if (filter.may_contain(rounded(vertices.at[v]))) found[first / grain].push_back(uint32_t(v));
+    }
+  });
+  std::vector<uint32_t> all;
+  for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+// Those at the same place as one of `outer`, more than one there, appended; all ascending.
+void add_meeting(const std::vector<uint32_t>& outer, const Vertices& vertices, Work& work,
+                 std::vector<uint32_t>& to) {
+  Filter filter;
+  for (const uint32_t v : outer) filter.add(rounded(vertices.at[v]));
+  std::vector<uint32_t> order = vertices_at(filter, vertices, work);
+  const auto place = [&](uint32_t v) { return rounded(vertices.at[v]); };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](uint32_t v, uint32_t w) { return place(v) < place(w); });
+  for (auto first = order.begin(); first != order.end();) {
+    const auto last =
+        std::find_if(first, order.end(), [&](uint32_t v) { return place(v) != place(*first); });
+    const bool any_outer = std::any_of(
+        first, last, [&](uint32_t v) { return std::binary_search(outer.begin(), outer.end(), v); });
+    if (last - first > 1 && any_outer) to.insert(to.end(), first, last);
+    first = last;
+  }
+}
 
 // Vertices at the same place in single precision, or nearly so in the same cell, one of which must
 // lie out of its cell or share it.
 std::vector<uint32_t> touching_vertices(const Grid& grid, const Net& net, const Places& places,
                                         const Vertices& vertices, Work& work) {
-  const size_t count = net.vertex_count();
-  // Bit 0: out of its cell; bit 1: touches one in the same cell; bit 2: may be at a place of one
-  // that is out.
-  Large<uint8_t> marks(count);
-  work.run(count, 4096, [&](size_t first, size_t last) {
-    for (size_t i = first; i < last; ++i) {
-      const uint32_t v = uint32_t(i);
-      marks[v] = !places.is_in_cell(v, vertices.at[v]);
-      const uint32_t begin = net.first_vertex[net.cell[v]];
-      for (uint32_t w = begin; w < count && net.cell[w] == net.cell[v]; ++w) {
-        if (w != v && norm(vertices.at[v] - vertices.at[w]) <= 1e-4 * grid.cell) marks[v] |= 2;
-      }
+  std::vector<uint32_t> suspects;
+  std::set_union(vertices.sharp.begin(), vertices.sharp.end(), vertices.apart.begin(),
+                 vertices.apart.end(), std::back_inserter(suspects));
+  std::vector<uint32_t> outer, result;
+  for (const uint32_t v : suspects) {
+    if (!places.is_in_cell(v, vertices.at[v])) outer.push_back(v);
+    bool touches = false;
+    const uint32_t begin = net.first_vertex[net.cell[v]];
+    for (uint32_t w = begin; w < net.vertex_count() && net.cell[w] == net.cell[v]; ++w) {
+      touches |= w != v && norm(vertices.at[v] - vertices.at[w]) <= 1e-4 * grid.cell;
     }
-  });
-  const auto outer = std::make_unique<RoundedPlaces>();
-  for (uint32_t v = 0; v < count; ++v) {
-    if (marks[v] & 1) outer->add(rounded(vertices.at[v]));
+    if (touches) result.push_back(v);
   }
-  work.run(count, 4096, [&](size_t first, size_t last) {
-    for (size_t v = first; v < last; ++v) {
-      if (outer->may_contain(rounded(vertices.at[v]))) marks[v] |= 4;
-    }
-  });
-  const auto number_at = [&](uint32_t v) {
-    return marks[v] & 4 ? outer->find(rounded(vertices.at[v])) : nullptr;
-  };
-  for (uint32_t v = 0; v < count; ++v) {
-    if (int* number = number_at(v)) ++*number;
-  }
-  std::vector<uint32_t> result;
-  for (uint32_t v = 0; v < count; ++v) {
-    const int* number = number_at(v);
-    if ((marks[v] & 2) || (number && *number > 1)) result.push_back(v);
-  }
+  if (!outer.empty()) add_meeting(outer, vertices, work, result);
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;
 }
 

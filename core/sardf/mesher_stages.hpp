@@ -151,7 +151,7 @@ struct Vertices {
 
   bool is_smooth(uint32_t v) const {
     const auto& n = normal[v];
-    return (n[0] != 0) | (n[1] != 0) | (n[2] != 0);
+    return !(n[0] == 0 && n[1] == 0 && n[2] == 0);
   }
 };
 

@@ -169,7 +169,7 @@ class SmoothVertices {
       beyond += (wanted - at) * (wanted - at);
       placed[axis] = at;
       normal[axis] = float(along);
-      is_inner &= (at > cell.lo[axis]) & (at < cell.lo[axis] + 0.999 * grid_.cell);
+      is_inner = is_inner && at > cell.lo[axis] && at < cell.lo[axis] + 0.999 * grid_.cell;
     }
     const double cells = 1 / (grid_.cell * grid_.cell);
     const bool found = inverse > 0 && step * step * cells < 4e-6 && beyond * cells < 1e-6;

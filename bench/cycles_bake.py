@@ -128,7 +128,7 @@ def node_material():
 
 def place(mesh, material, image):
     """The object, alone and active in the scene, and the image as the target of a bake."""
-    data = addon("mesh_data").build("part", mesh, np.ones((len(mesh.vertices), 1)), ["part"])
+    data = addon("baked.mesh_data").build("part", mesh)
     data.materials.append(material)
     item = bpy.data.objects.new("part", data)
     bpy.context.scene.collection.objects.link(item)

@@ -12,11 +12,6 @@ SCENE = GRADED_SPHERE | {
 }
 
 
-# Blender 3.4.1 died in one of five such windows, while a bake was stopped in its thread:
-# why is not known yet.
-pytestmark = pytest.mark.long
-
-
 @pytest.fixture(scope="module")
 def window(tmp_path_factory):
     folder = tmp_path_factory.mktemp("bake")

@@ -50,8 +50,8 @@ double area_of(const atlas::Surface& surface) {
   return area;
 }
 
-atlas::Layout lay_out(const atlas::Surface& surface, int size, int gutter, Pulse& pulse) {
-  const atlas::Report report = [&pulse] { pulse(0); };
+atlas::Layout lay_out(const atlas::Surface& surface, int size, int gutter, Pulse& pulse,
+                      const atlas::Report& report) {
   const double unit = std::sqrt(area_of(surface) / expected_use) / size;
   const double gap = gutter * unit, thin_gap = std::min(gap, thin_gutter * unit);
   pulse.stage(0.15);
@@ -83,27 +83,27 @@ struct Packed {
   atlas::Packing packing;
 };
 
-Packed pack(const Mesh& mesh, const atlas::Layout& layout, int size, int gutter, Pulse& pulse) {
+Packed pack(const Mesh& mesh, const atlas::Layout& layout, int size, int gutter,
+            const atlas::Report& report) {
   Packed packed{list_charts(layout), {}};
-  packed.packing =
-      atlas::pack(outline(mesh, layout, packed.charts), size, gutter, [&pulse] { pulse(0); });
+  packed.packing = atlas::pack(outline(mesh, layout, packed.charts), size, gutter, report);
   return packed;
 }
 
 /// Packs the layout; halves its largest charts while they leave too much of the image unused, as a
 /// few large rings and discs do.
 Packed pack_well(const atlas::Surface& surface, atlas::Layout& layout, int size, int gutter,
-                 Pulse& pulse) {
+                 const atlas::Report& report) {
   const double area = area_of(surface), texels = static_cast<double>(size) * size;
   const auto use = [&](const Packed& packed) {
     return packed.packing.scale * packed.packing.scale * area / texels;
   };
-  Packed best = pack(*surface.mesh, layout, size, gutter, pulse);
+  Packed best = pack(*surface.mesh, layout, size, gutter, report);
   atlas::Layout trial = layout;
   for (int i = 0; i < most_splits && use(best) < wanted_use; ++i) {
-    const size_t charts = atlas::halve_largest(surface, trial, chart_limit, [&pulse] { pulse(0); });
+    const size_t charts = atlas::halve_largest(surface, trial, chart_limit, report);
     if (charts == 0) break;
-    Packed packed = pack(*surface.mesh, trial, size, gutter, pulse);
+    Packed packed = pack(*surface.mesh, trial, size, gutter, report);
     if (use(packed) <= use(best)) continue;
     best = std::move(packed);
     layout = trial;
@@ -134,12 +134,13 @@ void place(const Packed& packed, atlas::Layout& layout) {
 Atlas make_atlas(Mesh& mesh, int size, int gutter, const Progress& progress) {
   check(size, gutter);
   Pulse pulse(progress);
+  const atlas::Report report = [&pulse] { pulse(0); };
   pulse.stage(0.05);
-  pulse(0);
+  report();
   const atlas::Surface surface = atlas::build_surface(mesh);
-  atlas::Layout layout = lay_out(surface, size, gutter, pulse);
+  atlas::Layout layout = lay_out(surface, size, gutter, pulse, report);
   pulse.stage(0.95);
-  Packed packed = pack_well(surface, layout, size, gutter, pulse);
+  Packed packed = pack_well(surface, layout, size, gutter, report);
   place(packed, layout);
   Atlas result;
   result.size = size;

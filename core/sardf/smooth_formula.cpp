@@ -26,8 +26,7 @@ int entry(int i, int j) {
   return i == 0 ? 3 + j : 5 + i + j - 1;
 }
 
-std::vector<Expression> nine_derivatives(const Expression& f) {
-  const std::array<Expression, 3> first = gradient(f);
+std::vector<Expression> nine_derivatives(const std::array<Expression, 3>& first) {
   const auto second = gradients(first);
   return {first[0],     first[1],     first[2],     second[0][0], second[0][1],
           second[0][2], second[1][1], second[1][2], second[2][2]};
@@ -36,11 +35,11 @@ std::vector<Expression> nine_derivatives(const Expression& f) {
 /// A formula of the three coordinates. It may be called with coordinates only.
 class SmoothFormula final : public DataOperation {
  public:
-  explicit SmoothFormula(const Expression& f)
+  SmoothFormula(const Expression& f, const std::array<Expression, 3>& first)
       : DataOperation({"smooth_formula", Kind::internal, 3, "A formula without kinks."},
                       {serial()}),
         formula_(f),
-        derivatives_(nine_derivatives(f)) {}
+        derivatives_(nine_derivatives(first)) {}
 
   // An evaluator within an evaluator must not use its blocks.
   using DataOperation::evaluate;
@@ -109,10 +108,14 @@ struct Part {
   Expression made;
 };
 
-// Its bounds are as good as they can be.
-bool is_linear(const Expression& f) {
-  const std::array<Expression, 3> by = gradient(f);
-  return std::all_of(by.begin(), by.end(), [](const Expression& d) { return is_constant(d); });
+// A formula without kinks; itself where it is linear, since its bounds are as good as they can be.
+Expression bounded(const Expression& f) {
+  const std::array<Expression, 3> first = gradient(f);
+  if (std::all_of(first.begin(), first.end(), [](const auto& d) { return is_constant(d); })) {
+    return f;
+  }
+  return call(std::make_shared<SmoothFormula>(f, first),
+              {coordinate(0), coordinate(1), coordinate(2)});
 }
 
 }  // namespace
@@ -121,10 +124,7 @@ Expression with_smooth_bounds(const Expression& expression) {
   std::unordered_map<const Node*, Part> parts;
   const auto finished = [&](const Expression& node) {
     Part& part = parts.at(node.get());
-    if (part.made) return part.made;
-    part.made = is_linear(node) ? node
-                                : call(std::make_shared<SmoothFormula>(node),
-                                       {coordinate(0), coordinate(1), coordinate(2)});
+    if (!part.made) part.made = bounded(node);
     return part.made;
   };
   for (const Node* node : topological_order({&expression, 1})) {

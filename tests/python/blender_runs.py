@@ -11,11 +11,14 @@ import numpy as np
 from PIL import Image
 from repository import ROOT
 
-BPY_PYTHON = ROOT / ".venv-bpy/bin/python"
 HEADLESS = ROOT / "blender_addon/headless.py"
 SCRIPTS = ROOT / "tests/blender"
 SCREENSHOTS = ROOT / "build/screenshots"
+# The environments that scripts/setup makes for Blender as a Python module.
+MODULES = {"4.2.23": ".venv-bpy-4.2", "4.5.15": ".venv-bpy-4.5", "5.0.1": ".venv-bpy"}
 VERSIONS = ("3.4.1", "5.0.1")
+# Those in which the zips are installed: also the ones with long support between the two.
+INSTALLED_VERSIONS = ("3.4.1", *MODULES)
 
 RED, STEEL = "#c03020", "#8a8f98"
 GRADED_SPHERE = {
@@ -102,6 +105,13 @@ def build_zips(wheel, folder):
     return [Path(line) for line in done.stdout.splitlines()]
 
 
+def bpy_python(version):
+    """The Python in which `import bpy` gives that Blender."""
+    python = ROOT / MODULES[version] / "bin/python"
+    assert python.exists(), f"no {python}: run scripts/setup --older-blenders"
+    return python
+
+
 def tool(script, *arguments):
     """Run one of our Python scripts with the Python that runs the tests."""
     words = [sys.executable, script, *arguments]
@@ -119,7 +129,12 @@ def start_script(version, script, *arguments, user_folder, env=None, cwd=None):
         command = ["blender", "-b", "-P", str(script), "--", *words]
     else:
         # The script may want its arguments after "--", as in Blender.
-        command = [str(BPY_PYTHON), str(script), *([] if script == HEADLESS else ["--"]), *words]
+        command = [
+            str(bpy_python(version)),
+            str(script),
+            *([] if script == HEADLESS else ["--"]),
+            *words,
+        ]
     return subprocess.Popen(
         command,
         cwd=cwd,

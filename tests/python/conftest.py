@@ -1,7 +1,7 @@
 """Fixtures that several files use."""
 
 import pytest
-from blender_runs import VERSIONS, build_zips
+from blender_runs import INSTALLED_VERSIONS, MODULES, build_zips
 from repository import ROOT
 
 
@@ -11,12 +11,12 @@ def zips(tmp_path_factory):
     wheels = list((ROOT / "build/dist").glob("sardf-*.whl"))
     assert len(wheels) == 1, "scripts/setup builds one wheel"
     extension, legacy = build_zips(wheels[0], tmp_path_factory.mktemp("dist"))
-    return {"3.4.1": legacy, "5.0.1": extension}
+    return {"3.4.1": legacy} | dict.fromkeys(MODULES, extension)
 
 
-@pytest.fixture(scope="module", params=VERSIONS)
+@pytest.fixture(scope="module", params=INSTALLED_VERSIONS)
 def version(request):
-    """Each Blender in which a test runs without a window."""
+    """Each Blender in which the zips are installed and used without a window."""
     return request.param
 
 

@@ -8,10 +8,11 @@ from pathlib import Path
 
 import pytest
 from blender_runs import (
-    BPY_PYTHON,
     GRADED_SPHERE,
     HEADLESS,
+    MODULES,
     SCRIPTS,
+    bpy_python,
     environment,
     write_scene,
 )
@@ -25,24 +26,26 @@ mount --bind "$0" "$0"; mount -o remount,ro,bind "$0"
 
 
 @pytest.fixture(scope="module")
-def bare_site(tmp_path_factory):
-    """What the environment of bpy holds, without its sardf: only the zip's can be found."""
-    folder = tmp_path_factory.mktemp("site")
-    for path in next((BPY_PYTHON.parent.parent / "lib").glob("python3*/site-packages")).iterdir():
-        if not path.name.startswith("sardf"):
-            (folder / path.name).symlink_to(path)
-    return folder
+def sites(tmp_path_factory):
+    """{Version: what its environment holds, without sardf}: only the zip's can be found."""
+    folders = {version: tmp_path_factory.mktemp("site") for version in MODULES}
+    for version, folder in folders.items():
+        libraries = bpy_python(version).parent.parent / "lib"
+        for path in next(libraries.glob("python3*/site-packages")).iterdir():
+            if not path.name.startswith("sardf"):
+                (folder / path.name).symlink_to(path)
+    return folders
 
 
-def run(version, script, *arguments, folder, site, prefix=()):
+def run(version, script, *arguments, folder, sites, prefix=()):
     words = [str(argument) for argument in arguments]
     if version == "3.4.1":
         command = ["blender", "-b", "--python-exit-code", "3", "-P", str(SCRIPTS / script), "--"]
     else:  # -S: without the environment's own packages
-        command = [str(BPY_PYTHON), "-S", str(SCRIPTS / script), "--"]
-    user = environment(folder / "user") | {"PYTHONPATH": str(site)}
-    if version == "3.4.1":
-        user.pop("PYTHONPATH")
+        command = [str(bpy_python(version)), "-S", str(SCRIPTS / script), "--"]
+    user = environment(folder / "user")
+    if version in sites:
+        user["PYTHONPATH"] = str(sites[version])
     for kind in ("config", "scripts"):
         (folder / "user" / kind).mkdir(parents=True, exist_ok=True)
     done = subprocess.run(
@@ -63,11 +66,11 @@ def for_another_python(path, target):
     return target
 
 
-def test_a_zip_for_another_python_is_refused_in_clear_words(version, zips, bare_site, tmp_path):
+def test_a_zip_for_another_python_is_refused_in_clear_words(version, zips, sites, tmp_path):
     wrong = for_another_python(zips[version], tmp_path / "wrong.zip")
     result = tmp_path / "result.json"
     words = (result, "refused", wrong, write_scene(tmp_path, GRADED_SPHERE))
-    run(version, "installed_steps.py", *words, folder=tmp_path, site=bare_site)
+    run(version, "installed_steps.py", *words, folder=tmp_path, sites=sites)
     found = json.loads(result.read_text())
     if "by Blender" in found:
         assert version != "3.4.1"
@@ -79,19 +82,24 @@ def test_a_zip_for_another_python_is_refused_in_clear_words(version, zips, bare_
         assert "use a zip that has it for cp311" in text
 
 
-def test_nothing_is_written_to_the_addons_folder(version, zips, bare_site, tmp_path):
+def test_an_installed_zip_is_used_and_nothing_written_to_its_folder(version, zips, sites, tmp_path):
     if os.geteuid() != 0:
         pytest.skip("a file system that cannot be written needs root")
-    common = {"folder": tmp_path, "site": bare_site}
+    common = {"folder": tmp_path, "sites": sites}
     scene = write_scene(tmp_path, GRADED_SPHERE)
     words = ("install", tmp_path / "installed.json", zips[version])
     run(version, "matrix_steps.py", *words, **common)
     (addon,) = (p for p in (tmp_path / "user").rglob("sardf_blender") if p.is_dir())
     before = {path: path.read_bytes() for path in addon.rglob("*") if path.is_file()}
     prefix = ["unshare", "--mount", "--propagation", "private", "sh", "-euc", READ_ONLY, str(addon)]
-    result = tmp_path / "used.json"
-    run(version, "matrix_steps.py", "use", result, scene, tmp_path, prefix=prefix, **common)
-    used = json.loads(result.read_text())
+    used, reopened = (tmp_path / f"{name}.json" for name in ("used", "reopened"))
+    run(version, "matrix_steps.py", "use", used, scene, tmp_path, prefix=prefix, **common)
+    run(version, "matrix_steps.py", "reopen", reopened, scene, tmp_path, prefix=prefix, **common)
+    used, reopened = (json.loads(path.read_text()) for path in (used, reopened))
+    assert used["version"].startswith(version)
+    assert reopened["state"] == used["state"]
+    assert reopened["settings"] == [True, 48, "512"]
+    assert sorted(reopened["baked again"]) == sorted(used["state"])
     assert used["color error"] < 0.02
     assert str(tmp_path / "user") in used["core"]
     assert (tmp_path / "part.blend").is_file()
@@ -99,8 +107,9 @@ def test_nothing_is_written_to_the_addons_folder(version, zips, bare_site, tmp_p
     assert after == before
 
 
-def test_commands_bake_render_and_export(zips, bare_site, tmp_path):
-    """In a Blender with commands; `blender -c sardf` itself is for scripts/test-blender-matrix."""
+@pytest.mark.parametrize("version", MODULES)
+def test_commands_bake_render_and_export(version, zips, sites, tmp_path):
+    """In Blenders with commands; `blender -c sardf` itself is for scripts/test-blender-matrix."""
     scene = str(write_scene(tmp_path, GRADED_SPHERE))
     small = ["--resolution", "12", "--size", "128", "--width", "24", "--height", "16"]
     runs = {
@@ -116,8 +125,8 @@ def test_commands_bake_render_and_export(zips, bare_site, tmp_path):
         "missing": ["bake", scene + ".missing", "-o", f"{tmp_path}/none"],
     }
     result = tmp_path / "result.json"
-    words = (result, "commands", zips["5.0.1"], json.dumps(list(runs.values())))
-    run("5.0.1", "installed_steps.py", *words, folder=tmp_path, site=bare_site)
+    words = (result, "commands", zips[version], json.dumps(list(runs.values())))
+    run(version, "installed_steps.py", *words, folder=tmp_path, sites=sites)
     found = json.loads(result.read_text())
     assert found["registered"] == 1
     assert found["enabled still"]
@@ -155,10 +164,12 @@ part_import.import_scene(core.load(), {str(write_scene(tmp_path, GRADED_SPHERE))
 bpy.ops.wm.save_as_mainfile(filepath={str(made)!r})
 """
     user = environment(tmp_path / "user")
-    done = subprocess.run([BPY_PYTHON, "-c", code], capture_output=True, text=True, env=user)
+    done = subprocess.run(
+        [bpy_python("5.0.1"), "-c", code], capture_output=True, text=True, env=user
+    )
     assert made.is_file(), done.stdout + done.stderr
     small = ["--resolution", "12", "--size", "128", "--width", "24", "--height", "16"]
-    words = [BPY_PYTHON, HEADLESS, made, "-o", tmp_path / "out", "--look", "flat", *small]
+    words = [bpy_python("5.0.1"), HEADLESS, made, "-o", tmp_path / "out", "--look", "flat", *small]
     done = subprocess.run(words, capture_output=True, text=True, env=user)
     assert done.returncode == 0, done.stdout + done.stderr
     written = {path.name for path in Path(tmp_path / "out").iterdir()}

@@ -56,7 +56,7 @@ def cases(folder, prepare):
     folder.mkdir()
     result = {}
     for case in (channels, existing, smart, destinations, mistakes, material, info, disabled):
-        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
         settings = bpy.context.scene.sardf
         settings.resolution, settings.size = 16, "256"
         prepare()

@@ -25,7 +25,7 @@ def case(check):
 def main(folder):
     result = {}
     for name, check in CASES.items():
-        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
         bpy.ops.sardf.primitive_add(kind="box")
         bpy.ops.sardf.primitive_add(kind="cylinder", operation="difference")
         part = part_objects.parts(bpy.context.scene)[0]
@@ -251,7 +251,7 @@ def uneven(part, _folder):
 
 def many():
     """Seconds for a part of 10 000 spheres: to make, to read, to show."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     times = [time.perf_counter()]
     part = part_objects.new_part("many", bpy.context.collection)
     first = part_objects.new_primitive("sphere", "first", bpy.context.collection)

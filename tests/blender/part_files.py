@@ -12,7 +12,7 @@ from sardf_blender.parts import part_objects, part_scene
 def main(folder, *paths):
     results = {}
     for path in paths:
-        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
         started = time.perf_counter()
         bpy.ops.sardf.part_import(filepath=path)
         seconds = time.perf_counter() - started

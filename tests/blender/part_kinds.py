@@ -11,7 +11,7 @@ CURVES = ("poly", "ring", "nurbs", "closed", "weighted", "free", "bezier", "loop
 
 def fresh(check, *arguments):
     """What a check finds in an empty file."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     return check(*arguments)
 
 

@@ -105,7 +105,7 @@ def bake(path):
 
 def bring_in(path, link):
     """The part from another file, appended or linked with what it points to."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     directory = f"{path}/Object/"
     bpy.ops.wm.append(directory=directory, filename="Part", link=link, instance_collections=False)
     part = next(o for o in bpy.data.objects if o.sardf_part.is_part)

@@ -28,7 +28,7 @@ def main(scene_file, folder):
     """Each check in an empty file with the part of the scene file."""
     result = {}
     for name, check in CASES.items():
-        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
         bpy.ops.sardf.part_import(filepath=scene_file)
         settings = bpy.context.scene.sardf
         settings.resolution, settings.size = 24, "256"
@@ -237,7 +237,7 @@ def linked(part, folder):
     plane.name, part.name = "its plane", "its part"
     path = str(folder / "library.blend")
     bpy.ops.wm.save_as_mainfile(filepath=path)
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     bpy.ops.sardf.primitive_add(kind="box")
     (own,) = part_objects.parts(bpy.context.scene)
     for name in ("its plane", "its part"):

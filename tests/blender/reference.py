@@ -18,7 +18,7 @@ NUMBERS = compare.NUMBERS
 
 def start(width=WIDTH, height=HEIGHT, resolution=48):
     """An empty scene with a camera above one corner, and a black world."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     scene = bpy.context.scene
     scene.render.resolution_x, scene.render.resolution_y = width, height
     scene.sardf.resolution, scene.sardf.size = resolution, "512"

@@ -2,6 +2,7 @@
 
 import pytest
 from blender_runs import INSTALLED_VERSIONS, MODULES, build_zips
+from blender_runs import run_check as run_check_of
 from repository import ROOT
 
 
@@ -12,6 +13,16 @@ def zips(tmp_path_factory):
     assert len(wheels) == 1, "scripts/setup builds one wheel"
     extension, legacy = build_zips(wheels[0], tmp_path_factory.mktemp("dist"))
     return {"3.4.1": legacy} | dict.fromkeys(MODULES, extension)
+
+
+@pytest.fixture(scope="session")
+def run_check(zips):
+    """blender_runs.run_check with the zip that the version wants: (version, folder, check, ...)."""
+
+    def run(version, *arguments):
+        return run_check_of(zips[version], version, *arguments)
+
+    return run
 
 
 @pytest.fixture(scope="module", params=INSTALLED_VERSIONS)

@@ -1,4 +1,4 @@
-"""The add-on's zips installed in Blender 3.4.1 and bpy 5.0.1."""
+"""The add-on's zips installed in four Blenders."""
 
 import json
 import threading

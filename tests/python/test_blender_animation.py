@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from blender_runs import HEADLESS, VERSIONS, run_check, run_script
+from blender_runs import HEADLESS, run_script
 
 WIDTH, HEIGHT = 96, 72
 ORTHO_SCALE = 3.0  # scene units along the picture's width
@@ -19,26 +19,24 @@ SMALL = ("--width", WIDTH, "--height", HEIGHT, "--samples", 2, "--resolution", 2
 ALONE = 17
 
 
-@pytest.fixture(scope="module", params=VERSIONS)
-def rendered(request, tmp_path_factory):
+@pytest.fixture(scope="module")
+def rendered(run_check, version, tmp_path_factory):
     """(version, what the file says, what all frames show, what one frame shows that was rendered
     alone, their folder)."""
     folder = tmp_path_factory.mktemp("animation")
     blend, camera = folder / "part.blend", folder / "camera.json"
-    said = run_check(request.param, folder, "animation", "make", blend)
+    said = run_check(version, folder, "animation", "make", blend)
     camera.write_text(json.dumps(CAMERA))
     words = (blend, "-o", folder / "all", *SMALL, "--camera", camera, "--frames", 1, 24)
-    done = run_script(request.param, HEADLESS, *words, user_folder=folder / "user", limit=1500)
+    done = run_script(version, HEADLESS, *words, user_folder=folder / "user", limit=1500)
     assert done.returncode == 0, done.stdout + done.stderr
     # As a command of Blender 4.2 and later, which is run here in a session of its own.
     words = ("render", blend, "-o", folder / "alone", *SMALL, "--camera", camera)
-    code = run_check(
-        request.param, folder, "animation", "command", *words, "--frames", ALONE, ALONE
-    )
+    code = run_check(version, folder, "animation", "command", *words, "--frames", ALONE, ALONE)
     assert code == 0
-    shown = [run_check(request.param, folder, "animation", "read", folder / name)
+    shown = [run_check(version, folder, "animation", "read", folder / name)
              for name in ("all", "alone")]  # fmt: skip
-    return request.param, said, *shown, folder
+    return version, said, *shown, folder
 
 
 def test_every_frame_is_there_and_nothing_else(rendered):

@@ -1,11 +1,10 @@
-"""What is said about wrong parts, and random work on parts, in Blender 3.4.1 and bpy 5.0.1."""
+"""What is said about wrong parts, and random work on parts, in four Blenders."""
 
 import pytest
-from blender_runs import run_check
 
 
 @pytest.fixture(scope="module")
-def bad(version, tmp_path_factory):
+def bad(run_check, version, tmp_path_factory):
     folder = tmp_path_factory.mktemp("bad")
     return run_check(version, folder, "part_bad", folder)
 
@@ -76,7 +75,7 @@ def test_ten_thousand_objects(bad):
     assert "press Check" in many["status"][0]
 
 
-def test_random_work_leaves_nothing_behind(version, tmp_path):
+def test_random_work_leaves_nothing_behind(run_check, version, tmp_path):
     found = run_check(version, tmp_path, "part_random", 300, 20261126, tmp_path)
     assert found["steps"] >= 300
     assert min(found["done"].values()) > 0, found["done"]

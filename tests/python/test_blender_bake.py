@@ -1,18 +1,17 @@
-"""The bake's settings in Blender 3.4.1 and bpy 5.0.1, for scene files and for parts alike."""
+"""The bake's settings in four Blenders, for scene files and for parts alike."""
 
 from itertools import combinations
 
 import pytest
-from blender_runs import VERSIONS, run_check
 
 HEIGHTS = {"sardf uv map": 130, "Principled BSDF": 750, "sardf normal switch": 90}
 HEIGHT = 320  # of any other node at most: an image node, as a window draws it
 
 
-@pytest.fixture(scope="module", params=VERSIONS)
-def choices(request, tmp_path_factory):
+@pytest.fixture(scope="module")
+def choices(run_check, version, tmp_path_factory):
     folder = tmp_path_factory.mktemp("choices")
-    return run_check(request.param, folder, "bake_choices", folder)
+    return run_check(version, folder, "bake_choices", folder)
 
 
 @pytest.fixture(params=("file", "part"))

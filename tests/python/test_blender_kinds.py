@@ -1,19 +1,18 @@
-"""What parts are made of, in Blender 3.4.1 and bpy 5.0.1: curves, parts, features, animation."""
+"""What parts are made of, in four Blenders: curves, parts, features, animation."""
 
 import json
 
 import numpy as np
 import pytest
 import sardf
-from blender_runs import VERSIONS, run_check
 from repository import ROOT
 
 LINED_BORE = ROOT / "scenes/lined_bore.json"
 
 
-@pytest.fixture(scope="module", params=VERSIONS)
-def kinds(request, tmp_path_factory):
-    return run_check(request.param, tmp_path_factory.mktemp("kinds"), "part_kinds", LINED_BORE)
+@pytest.fixture(scope="module")
+def kinds(run_check, version, tmp_path_factory):
+    return run_check(version, tmp_path_factory.mktemp("kinds"), "part_kinds", LINED_BORE)
 
 
 def load(scene):

@@ -2,14 +2,13 @@
 
 import numpy as np
 import pytest
-from blender_runs import VERSIONS, run_check
 
 CELL = 0.2  # a stand-in's cells are smaller
 
 
-@pytest.fixture(scope="module", params=VERSIONS)
-def shown(request, tmp_path_factory):
-    return run_check(request.param, tmp_path_factory.mktemp("shown"), "part_shown")
+@pytest.fixture(scope="module")
+def shown(run_check, version, tmp_path_factory):
+    return run_check(version, tmp_path_factory.mktemp("shown"), "part_shown")
 
 
 def check_box(step, lo, hi):

@@ -1,4 +1,4 @@
-"""Parts made of Blender objects, in Blender 3.4.1 and bpy 5.0.1: objects as fields, files."""
+"""Parts made of Blender objects, in four Blenders: objects as fields, files."""
 
 import json
 import os
@@ -6,7 +6,6 @@ import os
 import numpy as np
 import pytest
 import sardf
-from blender_runs import run_check
 from repository import ROOT
 from scene_json import load_document
 
@@ -17,7 +16,7 @@ QUICK = [path for path in SCENES if path.stem != "cube_spiral"]  # it solves for
 
 
 @pytest.fixture(scope="module")
-def shapes(version, tmp_path_factory):
+def shapes(run_check, version, tmp_path_factory):
     folder = tmp_path_factory.mktemp("shapes")
     return run_check(version, folder, "part_shapes", folder)
 
@@ -109,7 +108,7 @@ def test_uneven_scale_keeps_the_field_a_bound_and_says_that_it_is_no_distance(sh
 
 
 @pytest.fixture(scope="module")
-def files(version, tmp_path_factory):
+def files(run_check, version, tmp_path_factory):
     found = run_check(version, tmp_path_factory.mktemp("files"), "part_files",
                       tmp_path_factory.mktemp("saved"), *SCENES)  # fmt: skip
     return {path: found[str(path)] for path in SCENES}
@@ -164,7 +163,7 @@ def test_a_file_gives_objects(files):
 
 
 @pytest.fixture(scope="module")
-def life(version, tmp_path_factory):
+def life(run_check, version, tmp_path_factory):
     folder = tmp_path_factory.mktemp("life")
     return run_check(version, folder, "part_life", folder)
 

@@ -1,4 +1,4 @@
-"""Parts in POV-Ray by Blender's camera and lights, and against Cycles; Blender 3.4.1, bpy 5.0.1."""
+"""Parts in POV-Ray by Blender's camera and lights, and against Cycles; in four Blenders."""
 
 import os
 
@@ -7,14 +7,13 @@ from blender_runs import (
     GRADED_SPHERE,
     SCRIPTS,
     addon_for_window,
-    run_check,
     run_in_window,
     write_scene,
 )
 
 
 @pytest.fixture(scope="module")
-def lit(version, tmp_path_factory):
+def lit(run_check, version, tmp_path_factory):
     folder = tmp_path_factory.mktemp("lights")
     return run_check(version, folder, "reference", "lights", folder)
 
@@ -26,7 +25,7 @@ def check_agrees(numbers, median=2.0, outline=0.999):
     assert numbers["compared_pixels"] > 500
 
 
-def test_cameras(version, tmp_path):
+def test_cameras(run_check, version, tmp_path):
     found = run_check(version, tmp_path, "reference", "cameras")
     assert len(found) == 7
     for numbers in found.values():
@@ -48,14 +47,14 @@ def test_flat(lit):
     assert lit["flat"]["quantile_99"] <= 2
 
 
-def test_parts_turned_and_cut(version, tmp_path):
+def test_parts_turned_and_cut(run_check, version, tmp_path):
     found = run_check(version, tmp_path, "reference", "turned")
     for numbers in found.values():
         check_agrees(numbers, outline=0.998)
     assert found["cut"]["compared_pixels"] != found["whole"]["compared_pixels"]
 
 
-def test_an_object_baked_from_a_scene_file(version, tmp_path):
+def test_an_object_baked_from_a_scene_file(run_check, version, tmp_path):
     section = {"remove": {"half_space": {"normal": [0, -1, 0]}}}
     path = write_scene(tmp_path, GRADED_SPHERE | {"sections": [section]})
     found = run_check(version, tmp_path, "reference", "scene_file", path)
@@ -64,7 +63,7 @@ def test_an_object_baked_from_a_scene_file(version, tmp_path):
     assert "nothing to draw" in found["gone"]["error"]
 
 
-def test_what_is_left_behind(version, tmp_path):
+def test_what_is_left_behind(run_check, version, tmp_path):
     found = run_check(version, tmp_path, "reference", "leaves")
     assert found["counts"][0] == found["counts"][1] == found["counts"][2]
     assert found["settings"]
@@ -77,7 +76,7 @@ def test_what_is_left_behind(version, tmp_path):
     assert found["alone"]["compared"] == ""
 
 
-def test_what_cannot_be_drawn_is_told(version, tmp_path):
+def test_what_cannot_be_drawn_is_told(run_check, version, tmp_path):
     found = run_check(version, tmp_path, "reference", "bad")
     assert "nothing to draw" in found["nothing"]["error"]
     assert "has no camera" in found["no camera"]["error"]
@@ -95,7 +94,7 @@ def test_what_cannot_be_drawn_is_told(version, tmp_path):
     assert "cannot be compared" in found["empty"]["error"]
 
 
-def test_povray_is_missing(version, tmp_path, monkeypatch):
+def test_povray_is_missing(run_check, version, tmp_path, monkeypatch):
     monkeypatch.setitem(os.environ, "POVRAY", "/no/povray")
     found = run_check(version, tmp_path, "reference", "missing")
     for numbers in (found["compared"], found["alone"]):
@@ -104,7 +103,7 @@ def test_povray_is_missing(version, tmp_path, monkeypatch):
     assert found["left"]
 
 
-def test_the_command(version, tmp_path):
+def test_the_command(run_check, version, tmp_path):
     found = run_check(version, tmp_path, "reference", "command", tmp_path)
     assert found["codes"] == [0, 2, 2]
     kinds = ("cycles", "difference", "reference")

@@ -1,21 +1,21 @@
-"""Parts cut open by section objects, in Blender 3.4.1 and bpy 5.0.1."""
+"""Parts cut open by section objects, in four Blenders."""
 
 import math
 
 import numpy as np
 import pytest
-from blender_runs import GRADED_SPHERE, VERSIONS, expected_fractions, run_check, write_scene
+from blender_runs import GRADED_SPHERE, expected_fractions, write_scene
 
 RADIUS = GRADED_SPHERE["fields"]["ball"]["sphere"]["radius"]
 FRONT = {"half_space": {"point": [0, 0, 0], "normal": [0, -1, 0]}}
 NEAR = 1e-3  # scene units: vertices on a plane
 
 
-@pytest.fixture(scope="module", params=VERSIONS)
-def found(request, tmp_path_factory):
+@pytest.fixture(scope="module")
+def found(run_check, version, tmp_path_factory):
     folder = tmp_path_factory.mktemp("sections")
     scene = write_scene(folder, GRADED_SPHERE)
-    return run_check(request.param, folder, "part_sections", scene, folder)
+    return run_check(version, folder, "part_sections", scene, folder)
 
 
 def half_space(point, normal):

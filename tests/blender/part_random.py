@@ -11,7 +11,7 @@ KINDS = ("objects", "meshes", "curves", "materials", "images", "collections", "a
 
 
 class Work:
-    """A session of random steps; each is one operator or what a user does by hand."""
+    """Random steps; each is one operator or what a user does by hand."""
 
     def __init__(self, seed, folder):
         self.random = random.Random(seed)
@@ -191,12 +191,8 @@ STEPS = {
 }  # fmt: skip
 
 
-def main(count, seed, folder):
-    bpy.ops.ed.undo_push(message="start")
-    work = Work(int(seed), folder)
-    for _ in range(int(count)):
-        work.step()
-    # What is left once all parts are removed and what no one uses is purged, as saving does.
+def remove_all():
+    """Remove all parts, then what no one uses, as saving does; returns what is still there."""
     for item in list(bpy.data.objects):
         if item.sardf_part.is_part:
             item.sardf_part.entries.clear()
@@ -206,5 +202,20 @@ def main(count, seed, folder):
     bpy.data.batch_remove(list(bpy.context.scene.objects))
     bpy.data.orphans_purge(do_recursive=True)
     left = {kind: [item.name for item in getattr(bpy.data, kind)] for kind in KINDS}
-    left = {kind: names for kind, names in left.items() if names}
-    return {"steps": int(count), "done": work.done, "unexpected": work.unexpected, "left": left}
+    return {kind: names for kind, names in left.items() if names}
+
+
+def main(sequences, steps, seed, folder):
+    work = Work(int(seed), folder)
+    left = {}
+    for sequence in range(int(sequences)):
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+        add(work)
+        add(work)
+        bpy.ops.ed.undo_push(message="start")
+        for _ in range(int(steps)):
+            work.step()
+        names = remove_all()
+        if names:
+            left[sequence] = names
+    return {"done": work.done, "unexpected": work.unexpected, "left": left}

@@ -1,6 +1,7 @@
 """What is said about wrong parts, and random work on parts, in four Blenders."""
 
 import pytest
+from blender_runs import INSTALLED_VERSIONS
 
 
 @pytest.fixture(scope="module")
@@ -75,9 +76,21 @@ def test_ten_thousand_objects(bad):
     assert "press Check" in many["status"][0]
 
 
-def test_random_work_leaves_nothing_behind(run_check, version, tmp_path):
-    found = run_check(version, tmp_path, "part_random", 300, 20261126, tmp_path)
-    assert found["steps"] >= 300
+def check_random_work(found):
     assert min(found["done"].values()) > 0, found["done"]
     assert found["unexpected"] == []
     assert found["left"] == {}
+
+
+def test_random_work_leaves_nothing_behind(run_check, version, tmp_path):
+    """60 sequences of 12 steps in each of four Blenders."""
+    seed = 20261126 + INSTALLED_VERSIONS.index(version)
+    check_random_work(run_check(version, tmp_path, "part_random", 60, 12, seed, tmp_path))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("sequences", "steps"), [(200, 12), (4, 500)])
+def test_much_random_work_leaves_nothing_behind(run_check, version, tmp_path, sequences, steps):
+    seed = 9 + INSTALLED_VERSIONS.index(version)
+    words = (sequences, steps, seed, tmp_path)
+    check_random_work(run_check(version, tmp_path, "part_random", *words))

@@ -247,6 +247,10 @@ class Job:
             if self.part is not None and self.part.store is not None:
                 self.part.store.discard()
 
+    def join(self, limit):
+        """Wait until the thread ends, `limit` seconds at most."""
+        self._thread.join(limit)
+
     def go_on(self, uv):
         """Give the texture coordinates of `to_unwrap`."""
         self.to_unwrap, self._uv = None, uv

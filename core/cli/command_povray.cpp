@@ -2,6 +2,7 @@
 #include <iostream>
 
 #include "cli/commands.hpp"
+#include "cli/picture_options.hpp"
 #include "cli/render_povray.hpp"
 #include "cli/scene_option.hpp"
 #include "povray_gen/run.hpp"
@@ -49,17 +50,7 @@ void add_povray(CLI::App& app) {
       ->check(CLI::IsMember({"shaded", "flat", "normals"}))
       ->capture_default_str();
   command->add_option("--camera", options->camera, "A camera.json; else the scene is framed");
-  command->add_option("--width", options->files.width, "Pixels")
-      ->check(CLI::Range(8, 16384))
-      ->capture_default_str();
-  command->add_option("--height", options->files.height, "Pixels")
-      ->check(CLI::Range(8, 16384))
-      ->capture_default_str();
-  command
-      ->add_option("--samples", options->files.samples,
-                   "What has no formula is sampled at up to this number of points, cubed")
-      ->check(CLI::Range(8, 512))
-      ->capture_default_str();
+  add_picture_options(*command, options->files, 8);
   command->add_flag("--all-fields", options->files.all_fields,
                     "Also write fields that need samples which the picture does not");
   command->callback([options] { write_and_render(*options); });

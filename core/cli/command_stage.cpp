@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "cli/commands.hpp"
+#include "cli/picture_options.hpp"
 #include "povray_gen/run.hpp"
 #include "povray_gen/stage_files.hpp"
 #include "sardf/stage.hpp"
@@ -45,17 +46,7 @@ void add_stage(CLI::App& app) {
   command->add_option("--look", options->files.look, "lit (matte), flat or normals")
       ->check(CLI::IsMember({"lit", "flat", "normals"}))
       ->capture_default_str();
-  command->add_option("--width", options->files.width, "Pixels")
-      ->check(CLI::Range(1, 16384))
-      ->capture_default_str();
-  command->add_option("--height", options->files.height, "Pixels")
-      ->check(CLI::Range(1, 16384))
-      ->capture_default_str();
-  command
-      ->add_option("--samples", options->files.samples,
-                   "What has no formula is sampled at up to this number of points, cubed")
-      ->check(CLI::Range(8, 512))
-      ->capture_default_str();
+  add_picture_options(*command, options->files, 1);
   command
       ->add_option("--light-samples", options->files.light_samples,
                    "Along each side of an area light, and of soft shadows")

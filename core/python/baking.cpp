@@ -27,7 +27,7 @@ py::dict image_components(const Scene& scene, const std::vector<std::string>& na
   return out;
 }
 
-py::dict check_uv_of(const Scene&, const Mesh& mesh, int size, int gutter, py::object callable) {
+py::dict check_uv_of(const Mesh& mesh, int size, int gutter, py::object callable) {
   PythonProgress progress(std::move(callable));
   const UvReport report = progress.run([&](const Progress& tell) {
     return check_uv(TexelMap(mesh, size, gutter, part_of(tell, 0, 0.5)), part_of(tell, 0.5, 1));
@@ -63,8 +63,8 @@ py::tuple osl_of(const Scene& scene, const std::vector<std::string>& names,
 }
 
 template <class F, class... Extra>
-void add_method(const py::object& scene, const char* name, F f, const Extra&... extra) {
-  scene.attr(name) = py::cpp_function(f, py::name(name), py::is_method(scene), extra...);
+void add_method(const py::object& type, const char* name, F f, const Extra&... extra) {
+  type.attr(name) = py::cpp_function(f, py::name(name), py::is_method(type), extra...);
 }
 
 }  // namespace
@@ -75,9 +75,9 @@ void bind_baking(py::module_& m) {
              "{name: what it is} of all that bake() accepts for this scene.");
   add_method(scene, "image_components", &image_components, py::arg("channels"),
              "{image: its number of components} of what bake() makes of the channels.");
-  add_method(scene, "check_uv", &check_uv_of, py::arg("mesh"), py::arg("size") = 2048,
+  add_method(m.attr("Mesh"), "check_uv", &check_uv_of, py::arg("size") = 2048,
              py::arg("gutter") = 8, py::arg("progress") = py::none(),
-             "What a bake would find of the mesh's UV map: texels on the mesh; overlapping, those "
+             "What a bake would find of the UV map: texels on the mesh; overlapping, those "
              "on more than one triangle; faces, and how many reach outside [0, 1]; "
              "texels_per_unit, the root of texels per square scene unit.");
   add_method(scene, "check_surface", &check_surface_of, py::arg("mesh"), py::arg("tolerance"),

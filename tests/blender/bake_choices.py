@@ -4,7 +4,7 @@ destinations, and what is said when they cannot be had; run by part_run.py with 
 
 import functools
 import json
-import time
+import threading
 from pathlib import Path
 
 import bpy
@@ -14,6 +14,7 @@ from sardf_blender import bake_info, bake_operator, bake_plan, core
 from sardf_blender.baked import assemble, job, unwrap
 from sardf_blender.parts import part_objects
 
+LIMIT = 60.0  # seconds for anything at most
 SCENE = {
     "sardf": 1,
     "title": "graded",
@@ -334,19 +335,29 @@ def info(_folder, _settings, bake):
     }
 
 
+class WatchedJob(job.Job):
+    """A job that tells when its thread is at work."""
+
+    def __init__(self, sardf, request):
+        self.begun = threading.Event()
+        super().__init__(sardf, request)
+
+    def _progress(self, share):
+        self.begun.set()
+        return super()._progress(share)
+
+
 def disabled(folder, settings, bake):
     """The add-on is disabled while its thread bakes, and enabled again."""
     target = folder / "stopped"
     settings.destination, settings.folder = "FOLDER", str(target)
     settings.resolution, settings.size = 200, "4096"
     before = {kind: len(getattr(bpy.data, kind)) for kind in ("objects", "meshes", "images")}
-    running = job.Job(core.load(), bake_plan.make(bpy.context).request)
+    running = WatchedJob(core.load(), bake_plan.make(bpy.context).request)
     bake_operator.SARDF_OT_bake.job = running  # as in a window, where it goes on by itself
-    while running.running and running.share == 0:
-        time.sleep(0.001)
+    running.begun.wait(LIMIT)
     sardf_blender.unregister()
-    while running.running:
-        time.sleep(0.001)
+    running.join(LIMIT)
     result = {"cancelled": running.cancelled and running.part is None}
     result["left"] = target.exists()
     result["same"] = before == {kind: len(getattr(bpy.data, kind)) for kind in before}

@@ -145,8 +145,7 @@ def watch_end(job, stopped):
     def look():
         heard.wait()
         begun = time.monotonic()
-        while job.running:
-            time.sleep(0.001)
+        job.join(LIMIT)
         stopped.append(time.monotonic() - begun)
 
     job.cancel = cancelled

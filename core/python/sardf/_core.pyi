@@ -89,6 +89,10 @@ class Mesh:
     """
     def __init__(self) -> None:
         ...
+    def check_uv(self, size: typing.SupportsInt | typing.SupportsIndex = 2048, gutter: typing.SupportsInt | typing.SupportsIndex = 8, progress: typing.Any = None) -> dict:
+        """
+        What a bake would find of the UV map: texels on the mesh; overlapping, those on more than one triangle; faces, and how many reach outside [0, 1]; texels_per_unit, the root of texels per square scene unit.
+        """
     @property
     def creases(self) -> numpy.typing.NDArray[numpy.uint32]:
         """
@@ -150,10 +154,6 @@ class Scene:
     def check_surface(self, mesh: Mesh, tolerance: typing.SupportsFloat | typing.SupportsIndex, sections: bool = True) -> dict:
         """
         How far the mesh's vertices lie off the solid's surface, by |f| / |grad f|: vertices, how many are off by more than the tolerance, and the farthest distance, in scene units.
-        """
-    def check_uv(self, mesh: Mesh, size: typing.SupportsInt | typing.SupportsIndex = 2048, gutter: typing.SupportsInt | typing.SupportsIndex = 8, progress: typing.Any = None) -> dict:
-        """
-        What a bake would find of the mesh's UV map: texels on the mesh; overlapping, those on more than one triangle; faces, and how many reach outside [0, 1]; texels_per_unit, the root of texels per square scene unit.
         """
     def first_point(self, origin: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"], direction: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"], plane: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(4)"] = [0.0, 0.0, 0.0, 0.0]) -> typing.Annotated[list[float], "FixedSize(3)"] | None:
         """

@@ -16,7 +16,7 @@ def check_uv_map(scene, mesh, size=2048, sections=True, progress=None):
     more than 1 % of its faces reach out of the image, where no texel lies on it, and where no
     vertex is on the surface (another part's mesh); Cancelled.
     """
-    found = scene.check_uv(mesh, size=size, progress=progress)
+    found = mesh.check_uv(size=size, progress=progress)
     if found["texels"] == 0:
         _core._fail(
             "no texel lies on the mesh: its UV map is outside the image or folded to nothing; "

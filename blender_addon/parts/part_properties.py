@@ -257,8 +257,8 @@ def _section_object():
 
 
 def _part(entry, material, feature, section):
-    def items(of, name):
-        return bpy.props.CollectionProperty(type=of, name=name)
+    def items(of, name, description):
+        return bpy.props.CollectionProperty(type=of, name=name, description=description)
 
     def index(name):
         return bpy.props.IntProperty(name=name, description=f"The chosen one of the {name}", min=0)
@@ -272,13 +272,13 @@ def _part(entry, material, feature, section):
         "version": bpy.props.IntProperty(
             name="Version", description="Of the add-on's properties", options=hidden
         ),
-        "entries": items(entry, "Entries"),
+        "entries": items(entry, "Entries", "The objects that make the part, joined in this order"),
         "entry_index": index("entries"),
-        "materials": items(material, "Materials"),
+        "materials": items(material, "Materials", "What the part may be made of"),
         "material_index": index("materials"),
-        "features": items(feature, "Features"),
+        "features": items(feature, "Features", "Where which material is, by distances to objects"),
         "feature_index": index("features"),
-        "sections": items(section, "Sections"),
+        "sections": items(section, "Sections", "The objects that cut this part"),
         "section_index": index("sections"),
         "scene_sections": _flag(
             "Sections of All Parts", "Whether section objects that cut all parts cut this one",

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 
 import numpy as np
 import pytest
@@ -224,3 +225,14 @@ def test_append_and_link_bring_the_part_with_its_entries(life):
         assert found["request"]
         assert len(found["baked"]) == 1, kind
     assert "linked from" in life["library"]["error"]
+
+
+def test_every_property_and_operator_has_a_tooltip(run_check, version, tmp_path):
+    found = run_check(version, tmp_path, "tooltips")
+    assert len(found["properties"]) > 80
+    assert found["missing"] == []
+    # Those of primitives are the operations' own words, without the sentence's full stop.
+    text = (ROOT / "docs/operations.md").read_text()
+    torus = text[text.index("### torus") :].split("### ")[1]
+    (said,) = re.findall(r"\| `minor_radius` \|.*\| (.*) \|", torus)
+    assert said in found["properties"]["SardfPrimitive.torus_minor_radius"]

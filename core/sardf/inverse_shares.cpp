@@ -13,6 +13,8 @@ namespace sardf {
 namespace {
 
 constexpr double highest_power = 8;
+// Below this a distance has the root of this: a root's derivative at 0 is infinite.
+constexpr double least_rooted = 1e-30;
 
 bool is_call_of(const Expression& e, const char* name) {
   return e->type == Node::Type::operation && e->operation->info().name == name;
@@ -26,6 +28,10 @@ Expression squared(const Expression& u) {
     return call(make_operation(op), u->arguments());
   }
   return function("square", {is_call_of(u, "abs") ? u->inputs[0] : u});
+}
+
+Expression rooted(const Expression& u) {
+  return function("sqrt", {function("max", {u, constant(least_rooted)})});
 }
 
 template <int N>
@@ -47,10 +53,14 @@ std::vector<Expression> shares_of(std::vector<Expression> u, int exponent, doubl
 
 std::vector<Expression> inverse_shares(std::vector<Expression> u, double exponent, double least) {
   const size_t n = u.size();
-  if (n < 2 || n > 4 || exponent != std::floor(exponent)) return {};
+  if (n < 2 || n > 4 || 2 * exponent != std::floor(2 * exponent)) return {};
   if (!(exponent >= 1 && exponent * double(n - 1) <= highest_power)) return {};
   int power = static_cast<int>(exponent);
-  if (power % 2 == 0) {
+  if (power != exponent) {
+    power = static_cast<int>(2 * exponent);
+    least = std::sqrt(std::max(least, least_rooted));
+    for (Expression& each : u) each = rooted(each);
+  } else if (power % 2 == 0) {
     power /= 2;
     least *= least;
     for (Expression& each : u) each = squared(each);

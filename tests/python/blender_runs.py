@@ -228,14 +228,14 @@ def run_in_window(script, *arguments, user_folder, size, limit):
     return result
 
 
-def run_check(zip_file, version, folder, check, *arguments):
+def run_check(zip_file, version, folder, check, *arguments, **keywords):
     """What tests/blender/CHECK.py returns, run by part_run.py with the installed zip."""
     result = folder / f"{check}.json"
     words = (zip_file, result, check, *arguments)
     # A folder that only these runs use: a start in which the extension is not enabled removes the
     # modules that it brought.
     user = folder / "user_with_zip"
-    done = run_script(version, SCRIPTS / "part_run.py", *words, user_folder=user)
+    done = run_script(version, SCRIPTS / "part_run.py", *words, user_folder=user, **keywords)
     assert result.is_file(), done.stdout + done.stderr
     assert "Traceback" not in done.stdout + done.stderr, done.stdout + done.stderr
     return json.loads(result.read_text())

@@ -19,8 +19,8 @@ def zips(tmp_path_factory):
 def run_check(zips):
     """blender_runs.run_check with the zip that the version wants: (version, folder, check, ...)."""
 
-    def run(version, *arguments):
-        return run_check_of(zips[version], version, *arguments)
+    def run(version, *arguments, **keywords):
+        return run_check_of(zips[version], version, *arguments, **keywords)
 
     return run
 

@@ -93,4 +93,4 @@ def test_random_work_leaves_nothing_behind(run_check, version, tmp_path):
 def test_much_random_work_leaves_nothing_behind(run_check, version, tmp_path, sequences, steps):
     seed = 9 + INSTALLED_VERSIONS.index(version)
     words = (sequences, steps, seed, tmp_path)
-    check_random_work(run_check(version, tmp_path, "part_random", *words))
+    check_random_work(run_check(version, tmp_path, "part_random", *words, limit=3600))

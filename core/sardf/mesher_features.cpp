@@ -197,11 +197,14 @@ void place_features(const Field& field, const Grid& grid, const Net& net, const 
     });
   };
   place(vertices.sharp, slack_in_cells * grid.cell);
+  auto numbers = vertices_to_take_back(grid, net, places, vertices);
+  if (make_room(field, grid, net, places, numbers, vertices)) {
+    numbers = vertices_to_take_back(grid, net, places, vertices);
+  }
   // Those that were taken back stay in their room, so this ends.
-  for (;;) {
-    const auto numbers = vertices_to_take_back(grid, net, places, vertices);
-    if (numbers.empty()) break;
+  while (!numbers.empty()) {
     place(numbers, 0);
+    numbers = vertices_to_take_back(grid, net, places, vertices);
   }
 }
 

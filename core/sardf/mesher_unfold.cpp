@@ -75,7 +75,7 @@ class RoomMaker {
         if (at >= room.lo[axis] && at <= room.hi[axis]) continue;
         to[axis] = beyond(at, at > room.hi[axis], places_.cell_box(w), axis, to[axis]);
       }
-      is_moved(w, to);
+      move(w, to);
     }
     if (!before_.empty() && is_good_around(v) &&
         std::all_of(before_.begin(), before_.end(),
@@ -108,20 +108,17 @@ class RoomMaker {
     return result;
   }
 
-  // The coordinate of a neighbour that lies farther along the axis, or less far, than the vertex:
-  // halfway from the vertex to the far side of the neighbour's cell.
+  // The coordinate of a neighbour in whose cell the vertex came: farther from where that came from
+  // than halfway from it to the cell's other side.
   static double beyond(double vertex, bool above, const BoundingBox& cell, int axis, double at) {
-    if (above) {
-      const double middle = 0.5 * (vertex + cell.hi[axis]);
-      return vertex > cell.lo[axis] && vertex < cell.hi[axis] ? std::max(at, middle) : at;
-    }
-    const double middle = 0.5 * (vertex + cell.lo[axis]);
-    return vertex > cell.lo[axis] && vertex < cell.hi[axis] ? std::min(at, middle) : at;
+    if (!(vertex > cell.lo[axis] && vertex < cell.hi[axis])) return at;
+    return above ? std::max(at, 0.5 * (vertex + cell.hi[axis]))
+                 : std::min(at, 0.5 * (vertex + cell.lo[axis]));
   }
 
-  // Moves a smooth vertex to the surface near a point, if that is on the same side of edges.
-  bool is_moved(uint32_t w, Vec3 to) {
-    constexpr double near = 1e-6, same_side = 0.9;
+  // Moves a smooth vertex to the surface near a point, if the normal hardly changes on the way.
+  void move(uint32_t w, Vec3 to) {
+    constexpr double near = 1e-6, like = 0.9;
     const BoundingBox room = places_.room(w);
     Points<double> points;
     for (int step = 0; step < 4; ++step) {
@@ -130,17 +127,16 @@ class RoomMaker {
       const Vec3 normal = outward_normal(points.gradient_at(0));
       const Vec3 by = newton_step(points.value[0], points.gradient_at(0));
       const auto& old = vertices_.normal[w];
-      if (dot(normal, {old[0], old[1], old[2]}) < same_side) return false;
+      if (dot(normal, {old[0], old[1], old[2]}) < like) return;
       if (norm(by) <= near * grid_.cell) {
-        if (norm(to - vertices_.at[w]) <= near * grid_.cell) return false;
+        if (norm(to - vertices_.at[w]) <= near * grid_.cell) return;
         before_.push_back({w, vertices_.at[w], old});
         vertices_.at[w] = to;
         for (size_t axis = 0; axis < 3; ++axis) vertices_.normal[w][axis] = float(normal[axis]);
-        return true;
+        return;
       }
       to = clamped(to + by, room);
     }
-    return false;
   }
 
   bool is_good_around(uint32_t v) const {

@@ -2,6 +2,8 @@
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
+
 #include "register.hpp"
 #include "sardf/mesher.hpp"
 #include "shapes.hpp"
@@ -13,7 +15,8 @@ void mesh_shape(benchmark::State& state, Shape which, int threads) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
   const Evaluator solid(shape(which));
   MeshOptions options;
-  options.resolution = int(state.range(0));
+  const Vec3 size = bounds(which).size();
+  options.cell_size = std::max({size[0], size[1], size[2]}) / double(state.range(0));
   size_t quads = 0;
   for (auto _ : state) quads = make_mesh(solid, bounds(which), options).faces.size();
   state.counters["quads"] = double(quads);

@@ -2,9 +2,9 @@
 
     python bench/mesh_error.py [--cells 256] [--stl FOLDER]
 
-Both get cubic cells of the same size, and Flying Edges sardf's own values; see mesh_against_vtk.py.
-FOLDER may hold meshes of other programs, as S1.stl, S2.stl, S3.stl in binary form; `bench/fidget`
-writes Fidget's.
+All have cubic cells of the same size, and Flying Edges has sardf's own values; see peer_shapes.py.
+FOLDER may hold meshes of another program, whose name it bears, as S1.stl, S2.stl, S3.stl in binary
+form; `bench/compare_fidget --stl FOLDER` writes Fidget's, with 256 cells.
 
 The error is one-sided: from points on the mesh's triangles to the true surface, in cells of the
 grid. Each point goes to the surface by Newton's method in double precision, whose path is as long
@@ -13,11 +13,12 @@ as the way to the surface where that is smooth, and longer, never shorter, where
 
 import argparse
 import pathlib
+import time
 
 import numpy as np
-import sardf
 import vtk
-from mesh_against_vtk import SHAPES, flying_edges
+from mesh_against_vtk import flying_edges, print_row
+from peer_shapes import NAMES, Grid
 from vtk.util import numpy_support
 
 # Points of a triangle: its corners, the middles of its edges, its centre and three around it.
@@ -40,19 +41,19 @@ def distances(field, points):
     return length
 
 
-def report(name, program, field, triangles, cell):
-    """One line: greatest error, root of the mean square over the area, number of triangles."""
+def report(name, program, grid, triangles):
+    """A row: number of triangles, greatest error, root of the mean square over the area."""
     greatest, squares, areas = 0.0, 0.0, 0.0
     for part in np.array_split(triangles, max(1, len(triangles) // 50_000)):
         edges = part[:, 1:] - part[:, :1]
         area = 0.5 * np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1)
         points = np.einsum("wk,tkx->twx", WEIGHTS, part).reshape(-1, 3)
-        error = distances(field, points).reshape(len(part), -1) / cell
+        error = distances(grid.field, points).reshape(len(part), -1) / grid.cell
         greatest = max(greatest, error.max())
         squares += (area * (error**2).mean(axis=1)).sum()
         areas += area.sum()
     rms = np.sqrt(squares / areas)
-    print(f"{name:<18} {program:<13} {greatest:10.2e} {rms:10.2e} {len(triangles):10}", flush=True)
+    print_row([name, program, len(triangles), f"{greatest:.4f}", f"{rms:.4f}"])
 
 
 def triangles_of_quads(mesh):
@@ -79,22 +80,16 @@ def main():
     parser.add_argument("--cells", type=int, default=256, help="along the longest side")
     parser.add_argument("--stl", type=pathlib.Path, help="folder of meshes of another program")
     options = parser.parse_args()
-    print(f"{'':<18} {'':<13} {'greatest':>10} {'rms':>10} {'triangles':>10}   (errors in cells)")
-    for name, make in SHAPES.items():
-        field, half = make()
-        half = 1.1 * np.array(half)
-        cell = 2 * half.max() / options.cells
-        scene = sardf.Scene(solid=field, bounds=(tuple(-half), tuple(half)))
-        mesh = scene.mesh(cell_size=cell, size=0)
-        report(name, "sardf", field, triangles_of_quads(mesh), cell)
-        axes = [np.arange(-h, h + cell, cell, dtype=np.float32) for h in half]
-        z, y, x = np.meshgrid(axes[2], axes[1], axes[0], indexing="ij")
-        values = field(np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)).astype(np.float32)
-        polygons = flying_edges(values.reshape(x.shape), -half, cell)
-        report(name, "Flying Edges", field, triangles_of_vtk(polygons), cell)
+    print_row(["shape", "mesher", "triangles", "greatest error, cells", "rms, cells"])
+    print_row(["---"] * 5)
+    for name in NAMES:
+        grid = Grid(name, "tight", options.cells)
+        report(name, "sardf", grid, triangles_of_quads(grid.mesh()))
+        values, _ = grid.values(time.perf_counter)
+        report(name, "Flying Edges", grid, triangles_of_vtk(flying_edges(values, grid)))
         if options.stl:
-            path = options.stl / f"{name[:2]}.stl"
-            report(name, path.parent.name, field, triangles_of_stl(path), cell)
+            triangles = triangles_of_stl(options.stl / f"{name}.stl")
+            report(name, options.stl.name, grid, triangles)
 
 
 if __name__ == "__main__":

@@ -155,13 +155,15 @@ BoundingBox Places::room(uint32_t vertex) const {
   return room_of(grid_, grid_.point(cells_.at[net_.cell[vertex]]), net_.sides[vertex]);
 }
 
-bool Places::is_in_cell(uint32_t vertex, const Vec3& point) const {
+BoundingBox Places::cell_box(uint32_t vertex) const {
   const Index3& cell = cells_.at[net_.cell[vertex]];
+  return {grid_.point(cell), grid_.point({cell[0] + 1, cell[1] + 1, cell[2] + 1})};
+}
+
+bool Places::is_in_cell(uint32_t vertex, const Vec3& point) const {
+  const BoundingBox cell = cell_box(vertex);
   for (int axis = 0; axis < 3; ++axis) {
-    if (point[axis] < grid_.coordinate(axis, cell[axis]) ||
-        point[axis] > grid_.coordinate(axis, cell[axis] + 1)) {
-      return false;
-    }
+    if (point[axis] < cell.lo[axis] || point[axis] > cell.hi[axis]) return false;
   }
   return true;
 }

@@ -133,6 +133,8 @@ class Places {
   }
   /// Where a vertex may lie.
   BoundingBox room(uint32_t vertex) const;
+  /// The box of a vertex's cell.
+  BoundingBox cell_box(uint32_t vertex) const;
   bool is_in_cell(uint32_t vertex, const Vec3& point) const;
   Uses uses(uint32_t vertex) const;
 
@@ -274,6 +276,10 @@ void place_features(const Field& field, const Grid& grid, const Net& net, const 
 /// room, the vertex that lies farthest outside.
 std::vector<uint32_t> vertices_to_take_back(const Grid& grid, const Net& net, const Places& places,
                                             const Vertices& vertices);
+/// Moves the smooth neighbours of these vertices, which left their rooms, away where that unfolds
+/// their faces; whether any were moved.
+bool make_room(const Field& field, const Grid& grid, const Net& net, const Places& places,
+               const std::vector<uint32_t>& numbers, Vertices& vertices);
 /// Pieces of surface that touch stay apart: programs that merge equal points would join them.
 void separate(const Grid& grid, const Net& net, const Places& places, Vertices& vertices,
               Work& work);

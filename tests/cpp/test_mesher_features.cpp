@@ -116,6 +116,28 @@ TEST(MesherFeatures, CurvedCreases) {
   }
 }
 
+// The groove between two balls ends at a wall, in a corner that often lies out of its vertex's
+// cell, among the vertices of the wall.
+TEST(MesherFeatures, GroovesEndInCorners) {
+  const BoundingBox bounds = padded({0.55, 0.3, 0.3});
+  const double cell = cell_of(bounds, 40), radius = 0.3, half = 0.25;
+  int missed = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 at{i % 10 * 0.1 * cell, 0, i / 10 * 0.17 * cell};
+    const Expression balls =
+        joined(sphere(radius, at + Vec3{half, 0, 0}), sphere(radius, at - Vec3{half, 0, 0}));
+    const Mesh mesh =
+        mesh_of(cut(balls, box({4, 0.5, 0.5}, at + Vec3{0, -0.25, 0.25})), bounds, 40);
+    const Vec3 corner = at + Vec3{0, 0, std::sqrt(radius * radius - half * half)};
+    double nearest = infinity;
+    for (const Vec3& p : mesh.vertices) nearest = std::min(nearest, norm(p - corner));
+    missed += nearest > 0.01 * cell;
+    EXPECT_TRUE(count(mesh).closed());
+    EXPECT_EQ(turned_faces(mesh), 0u);
+  }
+  EXPECT_EQ(missed, 0);
+}
+
 // The rims of the holes, and the inner edges where the ring comes out of the block.
 TEST(MesherFeatures, CreasesOfBlendsRunOn) {
   const BoundingBox bounds = padded({10, 6, 6});

@@ -1,8 +1,9 @@
 //! Times of Fidget, for bench/compare_fidget: pictures of a .vm file, and dense evaluation and
 //! meshes of the three shapes of bench/shapes.hpp, by its interpreter and its compiler.
 //!
-//! One thread; times are the process's processor time in milliseconds. Each line is what was
-//! measured, by which of the two, the size, and median, least and greatest time.
+//! Times are in milliseconds, the process's processor time, and wall-clock time where there is more
+//! than one thread. Each line is what was measured, by which of the two, the size, and median, least
+//! and greatest time.
 mod shapes;
 
 use fidget::{
@@ -10,7 +11,7 @@ use fidget::{
     eval::{Function, MathFunction},
     jit::JitFunction,
     raster::pixel,
-    render::RenderHints,
+    render::{RenderHints, ThreadPool},
     shape::{BoundShape, EzShape, Shape},
     vm::VmFunction,
 };
@@ -89,25 +90,35 @@ fn dense<F: Function + MathFunction>(by: &str, name: &str, batch: usize, runs: u
     });
 }
 
+/// Once; the mesh is written into the folder, if there is one, for bench/mesh_error.py.
 fn mesh<F: Function + MathFunction + RenderHints + Clone>(
     by: &str,
     name: &str,
     depth: u8,
-    runs: usize,
+    threads: usize,
     folder: Option<&str>,
 ) {
     let (tree, half) = shapes::shape(name);
     let mut context = Context::new();
     let root = context.import(&-tree);
-    let scale = nalgebra::Vector3::new(half[0], half[1], half[2]);
-    time(&format!("mesh {name}"), by, 1 << depth, runs, || {
-        let start = seconds();
+    // Fidget meshes a cube of 2^depth cells along each edge; the box's longest side gives its size,
+    // so that cells are cubes as everywhere else.
+    let scale = half.into_iter().fold(0.0, f32::max);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = (threads > 1).then(|| ThreadPool::Custom(pool.unwrap()));
+    let wall_clock = std::time::Instant::now();
+    let now = || match threads {
+        1 => seconds(),
+        _ => wall_clock.elapsed().as_secs_f64(),
+    };
+    time(&format!("mesh {name}"), by, 1 << depth, 1, || {
+        let start = now();
         let shape = Shape::<F>::new(&context, root).unwrap();
         let bound: BoundShape<F, f32> = shape.try_into().unwrap();
         let settings = fidget::mesh::Settings {
             depth,
-            threads: None,
-            world_to_model: nalgebra::Matrix4::new_nonuniform_scaling(&scale),
+            threads: pool.as_ref(),
+            world_to_model: nalgebra::Matrix4::new_scaling(scale),
             ..Default::default()
         };
         let made = black_box(
@@ -115,7 +126,7 @@ fn mesh<F: Function + MathFunction + RenderHints + Clone>(
                 .unwrap()
                 .walk_dual(),
         );
-        let took = seconds() - start;
+        let took = now() - start;
         if let Some(folder) = folder {
             let mut file = std::fs::File::create(format!("{folder}/{name}.stl")).unwrap();
             made.write_stl(&mut file).unwrap();
@@ -124,29 +135,37 @@ fn mesh<F: Function + MathFunction + RenderHints + Clone>(
     });
 }
 
+fn measure(words: &[&str]) -> Option<()> {
+    match *words {
+        ["pictures", path, runs] => {
+            let runs = runs.parse().ok()?;
+            println!("what,by,size,median,least,greatest");
+            for size in [1024, 4096] {
+                picture::<VmFunction>("interpreter", path, size, runs);
+                picture::<JitFunction>("compiler", path, size, runs);
+            }
+            for name in ["S1", "S2", "S3"] {
+                dense::<VmFunction>("interpreter", name, 4096, runs);
+                dense::<JitFunction>("compiler", name, 16384, runs);
+            }
+        }
+        ["meshes", threads, ref folder @ ..] if folder.len() < 2 => {
+            let threads = threads.parse().ok().filter(|n| *n > 0)?;
+            println!("what,by,size,median,least,greatest");
+            for name in ["S1", "S2", "S3"] {
+                mesh::<JitFunction>("compiler", name, 8, threads, folder.first().copied());
+            }
+        }
+        _ => return None,
+    }
+    Some(())
+}
+
 fn main() {
-    let path = std::env::args()
-        .nth(1)
-        .expect("usage: fidget_bench FIELD.vm [RUNS [mesh [FOLDER]]]");
-    let runs = std::env::args()
-        .nth(2)
-        .map_or(7, |n| n.parse().expect("RUNS is a number"));
-    println!("what,by,size,median,least,greatest");
-    for size in [1024, 4096] {
-        picture::<VmFunction>("interpreter", &path, size, runs);
-        picture::<JitFunction>("compiler", &path, size, runs);
-    }
-    for name in ["S1", "S2", "S3"] {
-        dense::<VmFunction>("interpreter", name, 4096, runs);
-        dense::<JitFunction>("compiler", name, 16384, runs);
-    }
-    if std::env::args().nth(3).as_deref() != Some("mesh") {
-        return;
-    }
-    // Where the meshes are written as S1.stl, S2.stl, S3.stl, for bench/mesh_error.py.
-    let folder = std::env::args().nth(4);
-    // S3 alone takes half a minute.
-    for (name, times) in [("S1", 3), ("S2", 3), ("S3", 1)] {
-        mesh::<JitFunction>("compiler", name, 8, times, folder.as_deref());
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    if measure(&words).is_none() {
+        eprintln!("usage: fidget_bench pictures FIELD.vm RUNS | meshes THREADS [FOLDER]");
+        std::process::exit(2);
     }
 }

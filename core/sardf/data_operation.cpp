@@ -135,6 +135,16 @@ Nearest PointSet::nearest_beside(const Vec3& point, const Vec3&, const Nearest&)
   return nearest(point);
 }
 
+void PointSet::nearest_points(const double* const* points, size_t n, Nearest* found) const {
+  const auto at = [points](size_t i) { return Vec3{points[0][i], points[1][i], points[2][i]}; };
+  found[0] = nearest(at(0));
+  for (size_t i = 1; i < n; ++i) {
+    const Vec3 point = at(i), before = at(i - 1);
+    // Blocks are filled up with copies of their last point.
+    found[i] = point == before ? found[i - 1] : nearest_beside(point, before, found[i - 1]);
+  }
+}
+
 bool PointSet::may_jump(const Vec3&, double) const { return false; }
 
 double PointSet::accuracy(double distance) const {
@@ -177,16 +187,7 @@ class RecentSearches {
       jacobians.clear();
       for (int k = 0; k < 3; ++k) at[k].assign(in[k], in[k] + n);
       found.resize(n);
-      for (size_t i = 0; i < n; ++i) {
-        // Blocks are filled up with copies of their last point.
-        const bool again = i > 0 && in[0][i] == in[0][i - 1] && in[1][i] == in[1][i - 1] &&
-                           in[2][i] == in[2][i - 1];
-        const Vec3 point{in[0][i], in[1][i], in[2][i]};
-        found[i] = again   ? found[i - 1]
-                   : i > 0 ? set.nearest_beside(point, {in[0][i - 1], in[1][i - 1], in[2][i - 1]},
-                                                found[i - 1])
-                           : set.nearest(point);
-      }
+      if (n > 0) set.nearest_points(in, n, found.data());
       serial = set.serial();
     }
     const std::vector<Jacobian>& derived(const PointSet& set) {

@@ -69,6 +69,9 @@ class PointSet {
   /// The same, where the answer for a point `beside` it is known: that may save time, and changes
   /// nothing.
   virtual Nearest nearest_beside(const Vec3& point, const Vec3& beside, const Nearest& known) const;
+  /// The same for n points, at least one, by coordinate. What stands beside a point changes
+  /// nothing.
+  virtual void nearest_points(const double* const* points, size_t n, Nearest* found) const;
   /// Whether, in this ball or its neighbourhood, the distance may change its sign where it is not
   /// 0: there it is no distance, and its slope is infinite. With an infinite radius: anywhere.
   virtual bool may_jump(const Vec3& centre, double radius) const;

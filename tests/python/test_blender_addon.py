@@ -102,7 +102,6 @@ def slow_core(entered):
     def mesh(progress, **_):
         while progress(0.5):
             entered.set()
-            time.sleep(0)
         raise Cancelled
 
     channels = dict.fromkeys(job.CHANNELS, "")

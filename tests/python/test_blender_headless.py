@@ -1,8 +1,9 @@
 """headless.py in Blender 3.4.1 and with bpy 5.0.1: outputs, their values, and exit codes."""
 
+import contextlib
 import json
 import shutil
-import time
+import subprocess
 
 import numpy as np
 import pytest
@@ -255,8 +256,10 @@ def test_terminated_run_cleans_up_as_does_the_next_after_a_kill(version, tmp_pat
         version, HEADLESS, scene, "-o", output, "--resolution", 256, "--size", 4096,
         user_folder=tmp_path / "user",
     )  # fmt: skip
-    while process.poll() is None and (left.exists() or not list(output.glob(".sardf-*"))):
-        time.sleep(0.01)
+    while left.exists() or not list(output.glob(".sardf-*")):
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            process.wait(0.02)
+            break
     process.terminate()
     standard_output, standard_error = process.communicate(timeout=120)
     assert process.returncode == 1, standard_output + standard_error

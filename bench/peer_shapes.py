@@ -51,7 +51,7 @@ class Grid:
         return tuple(len(axis) for axis in reversed(self.axes))
 
     def mesh(self):
-        """sardf's mesh, without a texture. The scene shrinks the box to the solid: that is in it."""
+        """sardf's mesh, without a texture; making the scene shrinks the box to the solid."""
         scene = sardf.Scene(solid=self.field, bounds=(tuple(-self.half), tuple(self.half)))
         return scene.mesh(cell_size=self.cell, size=0)
 

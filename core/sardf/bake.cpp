@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <mutex>
 #include <optional>
@@ -12,7 +13,9 @@
 #include "sardf/bake_stages.hpp"
 #include "sardf/error.hpp"
 #include "sardf/evaluate.hpp"
+#include "sardf/numbers/lanes.hpp"
 #include "sardf/tangents.hpp"
+#include "sardf/zeroed_memory.hpp"
 
 namespace sardf {
 namespace {
@@ -88,14 +91,16 @@ class Group {
     for (size_t k = 0; k < outputs; ++k) out[k] = rows + k * block_size;
     float* const bent[3] = {rows + outputs * block_size, rows + (outputs + 1) * block_size,
                             rows + (outputs + 2) * block_size};
-    for (size_t first = 0; first < points.count; first += block_size) {
-      const size_t n = std::min(block_size, points.count - first);
+    baking::for_blocks(points, block_size, [&](int first_row, int last_row) {
+      const size_t first = points.start[size_t(first_row)];
+      const size_t n = points.start[size_t(last_row)] - first;
+      fetch(points, first_row, last_row);
       if (outputs > 0)
         evaluator_.block(&points.point[0][first], &points.point[1][first], &points.point[2][first],
                          n, out.data());
       if (normals) normals->colors(points, *corners, first, n, bent);
       if (!all_finite(out, n)) repair(points, first, n, nudge, out);
-      baking::for_runs(points, first, n, [&](size_t i, size_t count, int x, int y) {
+      baking::for_runs(points, first_row, last_row, [&](size_t i, size_t count, int x, int y) {
         const float* const* from = out.data();
         for (size_t k = 0; k < images.size(); ++k) {
           const bool bends = channels_[k].tangent_normal;
@@ -103,7 +108,7 @@ class Group {
           if (!bends) from += images[k].channels;
         }
       });
-    }
+    });
   }
 
   std::vector<Image> images;
@@ -111,23 +116,64 @@ class Group {
 
  private:
   static bool all_finite(const std::vector<float*>& rows, size_t n) {
-    bool all = true;
-    for (const float* row : rows)
-      for (size_t i = 0; i < n; ++i) all &= std::abs(row[i]) <= std::numeric_limits<float>::max();
-    return all;
+    using L = Lanes<Baseline>;
+    // 0 times what is not finite is NaN.
+    L zeros(0.0);
+    float rest = 0;
+    for (const float* row : rows) {
+      size_t i = 0;
+      for (; i + L::width <= n; i += L::width) zeros = zeros + L::load(row + i) * L(0.0);
+      for (; i < n; ++i) rest += row[i] * 0;
+    }
+    for (int k = 0; k < L::width; ++k) rest += zeros.v[k];
+    return rest == 0;
+  }
+
+  static void interleave_three(const float* a, const float* b, const float* c, size_t count,
+                               float* to) {
+    typedef float Four __attribute__((vector_size(16)));
+    const auto load = [](const float* from) {
+      Four v;
+      std::memcpy(&v, from, sizeof v);
+      return v;
+    };
+    const auto store = [](float* at, Four v) { std::memcpy(at, &v, sizeof v); };
+    size_t i = 0;
+    for (; i + 4 <= count; i += 4, to += 12) {
+      const Four x = load(a + i), y = load(b + i), z = load(c + i);
+      const Four z0x1 = __builtin_shufflevector(z, x, 0, 0, 5, 5);
+      const Four y1z1 = __builtin_shufflevector(y, z, 1, 1, 5, 5);
+      const Four x2y2 = __builtin_shufflevector(x, y, 2, 2, 6, 6);
+      const Four z2x3 = __builtin_shufflevector(z, x, 2, 2, 7, 7);
+      const Four y3z3 = __builtin_shufflevector(y, z, 3, 3, 7, 7);
+      const Four x0y0 = __builtin_shufflevector(x, y, 0, 4, 1, 5);
+      store(to, __builtin_shufflevector(x0y0, z0x1, 0, 1, 4, 6));
+      store(to + 4, __builtin_shufflevector(y1z1, x2y2, 0, 2, 4, 6));
+      store(to + 8, __builtin_shufflevector(z2x3, y3z3, 0, 2, 4, 6));
+    }
+    for (; i < count; ++i, to += 3) {
+      to[0] = a[i];
+      to[1] = b[i];
+      to[2] = c[i];
+    }
+  }
+
+  /// Asks for the memory of the rows' texels, which arrives while they are evaluated.
+  void fetch(const baking::TilePoints& points, int first_row, int last_row) {
+    constexpr size_t line = 64 / sizeof(float);
+    baking::for_runs(points, first_row, last_row, [&](size_t, size_t count, int x, int y) {
+      for (Image& image : images) {
+        const float* const to = image.at(x, y);
+        for (size_t i = 0; i < count * size_t(image.channels); i += line)
+          __builtin_prefetch(to + i, 1);
+      }
+    });
   }
 
   /// Texels of n components from an array for each.
   static void interleave(const float* const* from, size_t first, size_t count, int n, float* to) {
-    if (n == 3) {
-      const float *a = from[0] + first, *b = from[1] + first, *c = from[2] + first;
-      for (size_t i = 0; i < count; ++i) {
-        to[3 * i] = a[i];
-        to[3 * i + 1] = b[i];
-        to[3 * i + 2] = c[i];
-      }
-      return;
-    }
+    if (n == 3)
+      return interleave_three(from[0] + first, from[1] + first, from[2] + first, count, to);
     const size_t stride = size_t(n);
     for (size_t c = 0; c < stride; ++c)
       for (size_t i = 0; i < count; ++i) to[stride * i + c] = from[c][first + i];
@@ -195,7 +241,7 @@ class Baker {
     const double length = diagonal(*layout.mesh);
     tolerance_ = static_cast<float>(on_surface * length);
     nudge_ = nudge_length * length;
-    covered.assign(size_t(layout.size) * layout.size, 0);
+    resize_large(covered, size_t(layout.size) * size_t(layout.size));
   }
 
   /// Throws Error and Cancelled.
@@ -209,13 +255,15 @@ class Baker {
     found = 0;
     const NormalSource* normals = group.has_normals() ? &*normals_ : nullptr;
     for_tiles(layout_.tiles(), progress, from, to, [&](size_t tile) {
-      const auto points = std::make_unique<baking::TilePoints>();
-      const auto corners = normals ? std::make_unique<baking::TexelCorners>() : nullptr;
+      // Kept from tile to tile: making their memory anew takes as long as a tile's evaluation.
+      thread_local const auto points = std::make_unique_for_overwrite<baking::TilePoints>();
+      const auto corners =
+          normals ? std::make_unique_for_overwrite<baking::TexelCorners>() : nullptr;
       baking::find_texels(layout_, tile, *points, corners.get());
       found += points->count;
       if (solid_) baking::project(*solid_, *points, tolerance_);
       group.evaluate(*points, nudge_, normals, corners.get());
-      baking::for_runs(*points, 0, points->count, [&](size_t, size_t count, int x, int y) {
+      baking::for_runs(*points, 0, baking::tile_size, [&](size_t, size_t count, int x, int y) {
         std::fill_n(&covered[size_t(y) * layout_.size + x], count, 1);
       });
     });

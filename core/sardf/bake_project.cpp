@@ -93,10 +93,11 @@ class Movement {
   /// Where a step along the gradient leads, in place of the gradient.
   Step find_step(size_t k, std::array<float, 3>& gradient) const {
     const size_t p = place_[k];
+    const PointSurface& on = points_.surfaces[points_.on[p]];
     float squared = 0, cosine = 0;
     for (size_t axis = 0; axis < 3; ++axis) {
       squared += gradient[axis] * gradient[axis];
-      cosine += gradient[axis] * points_.normal[axis][p];
+      cosine += gradient[axis] * on.normal[axis];
     }
     if (!(cosine * cosine >= aligned * squared) || !(squared > 0)) return Step::none;
     const float scale = value_[k] / squared;
@@ -106,7 +107,7 @@ class Movement {
       const float d = gradient[axis] - points_.point[axis][p];
       moved += d * d;
     }
-    return moved <= points_.limit[p] * points_.limit[p] ? Step::taken : Step::too_far;
+    return moved <= on.limit * on.limit ? Step::taken : Step::too_far;
   }
 
   /// A point stays where it came unless it was nearer before.

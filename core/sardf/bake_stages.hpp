@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -63,14 +64,22 @@ void find_borders(UvLayout& layout, const std::function<void()>& report);
 /// Sorts faces and borders into the tiles that they touch.
 void fill_bins(UvLayout& layout);
 
-/// The covered texels of one tile and their points.
+/// A triangle, or a place beside the mesh, that points of a tile lie on.
+struct PointSurface {
+  std::array<float, 3> normal;
+  float limit;  // how far points may be moved
+};
+
+/// The covered texels of one tile and their points, row by row.
 struct TilePoints {
-  int x = 0, y = 0, width = 0, height = 0;  // of the tile, in texels
+  int x = 0, y = 0;  // of the tile, in texels
   size_t count = 0;
-  std::array<uint16_t, tile_texels> texel;               // row * tile_size + column, ascending
-  std::array<std::array<float, tile_texels>, 3> point;   // by coordinate
-  std::array<std::array<float, tile_texels>, 3> normal;  // of the face
-  std::array<float, tile_texels> limit;                  // how far the point may be moved
+  std::array<uint64_t, tile_size> covered;    // a bit for each texel of a row, the first the lowest
+  std::array<uint16_t, tile_size + 1> start;  // the first point of each row; at the end, `count`
+  /// Points by coordinate; what is behind `count` has no meaning.
+  std::array<std::array<float, tile_texels + tile_size>, 3> point;
+  std::array<uint32_t, tile_texels + tile_size> on;  // of `surfaces`
+  std::vector<PointSurface> surfaces;
 };
 
 /// Of which face the texels of a tile are, and with which weights of its four corners; those of one
@@ -80,17 +89,35 @@ struct TexelCorners {
   std::array<std::array<float, 4>, tile_texels> weight;
 };
 
-/// work(i, count, x, y) for the runs of points[first, first + n) whose texels (x, y), (x + 1, y),
+/// work(i, count, x, y) for the runs of points of rows [first, last) whose texels (x, y), (x + 1,
+/// y),
 /// ... of the image lie side by side; i is the first one's index.
 template <class Work>
-void for_runs(const TilePoints& points, size_t first, size_t n, Work work) {
-  for (size_t i = first; i < first + n;) {
-    const int texel = points.texel[i], row = texel / tile_size;
-    const size_t most = std::min(first + n - i, size_t((row + 1) * tile_size - texel));
-    size_t count = 1;
-    while (count < most && points.texel[i + count] == texel + static_cast<int>(count)) ++count;
-    work(i, count, points.x + texel % tile_size, points.y + row);
-    i += count;
+void for_runs(const TilePoints& points, int first, int last, Work work) {
+  for (int row = first; row < last; ++row) {
+    uint64_t left = points.covered[size_t(row)];
+    size_t i = points.start[size_t(row)];
+    while (left != 0) {
+      const int x = std::countr_zero(left), count = std::countr_one(left >> x);
+      work(i, size_t(count), points.x + x, points.y + row);
+      i += size_t(count);
+      left = x + count < 64 ? left >> (x + count) << (x + count) : 0;
+    }
+  }
+}
+
+/// work(first, last) for rows [first, last) with some points, at most `most` (not less than
+/// tile_size) together.
+template <class Work>
+void for_blocks(const TilePoints& points, size_t most, Work work) {
+  for (int first = 0; first < tile_size;) {
+    int last = first + 1;
+    while (last < tile_size &&
+           size_t(points.start[size_t(last + 1)] - points.start[size_t(first)]) <= most) {
+      ++last;
+    }
+    if (points.start[size_t(last)] > points.start[size_t(first)]) work(first, last);
+    first = last;
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sardf/bake_stages.hpp"
+#include "sardf/numbers/lanes.hpp"
 
 namespace sardf::baking {
 namespace {
@@ -66,55 +67,118 @@ TileBins make_bins(const UvLayout& layout, size_t items, BoxOf box_of) {
   return bins;
 }
 
+double length_of(const Vec3& a) { return std::sqrt(dot(a, a)); }
+
 double longest_edge(const Mesh& mesh, uint32_t face) {
   const auto& v = mesh.faces[face];
   double longest = 0;
   for (size_t k = 0; k < 4; ++k)
-    longest = std::max(longest, norm(mesh.vertices[v[(k + 1) % 4]] - mesh.vertices[v[k]]));
+    longest = std::max(longest, length_of(mesh.vertices[v[(k + 1) % 4]] - mesh.vertices[v[k]]));
   return longest;
 }
 
 /// A number for each texel of a tile, by rows.
 using Numbers = std::array<uint32_t, tile_texels>;
-constexpr uint32_t nothing = UINT32_MAX;
 
-using Floats = std::array<float, 3>;
-Floats floats(const Vec3& a) { return {float(a[0]), float(a[1]), float(a[2])}; }
+/// Of a vector that may be 0.
+std::array<float, 3> direction_of(const Vec3& a) {
+  const double length = length_of(a), by = length > 0 ? 1 / length : 0;
+  return {float(by * a[0]), float(by * a[1]), float(by * a[2])};
+}
 
-/// A triangle of the mesh and of the UV map; a point of the map is at t + b s + c r.
+/// A number that is linear in texel coordinates: value + x by_x + y by_y.
+struct Linear {
+  double value, by_x, by_y;
+  double at(double x, double y) const { return value + x * by_x + y * by_y; }
+};
+
+/// A triangle of the mesh and of the UV map: the weights of its second and third corner and the
+/// coordinates of its points, all linear from a texel of the tile on.
 struct Triangle {
-  Vec2 t, s, r;
-  double inverse;  // of the determinant of s and r
-  Vec3 p, e1, e2;
-  Floats normal;
-  float limit;
+  int x0, y0;
+  Linear b, c;
+  std::array<Linear, 3> point;
   uint32_t face, second;  // the second of its corners in the face; the first is 0
 
-  double b(double x, double y) const { return ((x - t[0]) * r[1] - (y - t[1]) * r[0]) * inverse; }
-  double c(double x, double y) const { return (s[0] * (y - t[1]) - s[1] * (x - t[0])) * inverse; }
-  Vec3 point(double x, double y) const { return p + b(x, y) * e1 + c(x, y) * e2; }
-};
-
-/// Columns of a row.
-struct Span {
-  double first, last;
-  /// Keeps those where value + (x - at) slope >= -edge_margin. Of NaN nothing is known.
-  void keep(double value, double slope, double at) {
-    const double zero = at - (value + edge_margin) / slope;
-    if (slope > 0) first = std::max(first, std::ceil(zero));
-    if (slope < 0) last = std::min(last, std::floor(zero));
-    if (slope == 0 && value < -edge_margin) last = first - 1;
+  /// Where weights change so much from texel to texel that rounding would move points off the
+  /// triangle.
+  bool is_thin() const {
+    constexpr double steep = 1e4;
+    return !(std::abs(b.by_x) < steep && std::abs(b.by_y) < steep && std::abs(c.by_x) < steep &&
+             std::abs(c.by_y) < steep);
   }
 };
 
-/// Writes n texels' points, on a line from `from` to `to`.
-void write_line(TilePoints& out, const Vec3& from, const Vec3& to, size_t n) {
-  const double scale = n > 1 ? 1 / double(n - 1) : 0;
-  for (size_t axis = 0; axis < 3; ++axis) {
-    float* at = &out.point[axis][out.count];
-    const double start = from[axis], step = scale * (to[axis] - from[axis]);
-    for (int i = 0; i < static_cast<int>(n); ++i) at[i] = float(start + i * step);
+/// The columns of each row of a box where some linear numbers are not negative.
+class Spans {
+ public:
+  explicit Spans(const TexelBox& box) : rows_(box.y1 - box.y0 + 1) {
+    std::fill_n(first_.begin(), rows_, 0);
+    std::fill_n(last_.begin(), rows_, box.x1 - box.x0);
   }
+
+  /// Keeps the texels where the number is at least -edge_margin. Of NaN nothing is known.
+  void keep(const Linear& number) {
+    // A number that changes by less than the margin in a row is taken as constant there.
+    constexpr double flat = edge_margin / (16 * tile_size);
+    const double value = number.value + edge_margin;
+    if (!(std::abs(number.by_x) > flat)) {
+      for (int row = 0; row < rows_; ++row)
+        if (value + row * number.by_y < 0) last_[size_t(row)] = -1;
+      return;
+    }
+    const double zero = -value / number.by_x, by_y = -number.by_y / number.by_x;
+    if (number.by_x > 0) {
+      for (int row = 0; row < rows_; ++row)
+        first_[size_t(row)] = std::max(first_[size_t(row)], zero + row * by_y);
+    } else {
+      for (int row = 0; row < rows_; ++row)
+        last_[size_t(row)] = std::min(last_[size_t(row)], zero + row * by_y);
+    }
+  }
+
+  /// The first column of a row, and the one behind its last; not less than the first where there
+  /// are none.
+  std::pair<int, int> of(int row) const {
+    // Limits are columns of a tile or beside it: rounded up and down by way of positive numbers.
+    constexpr double most = tile_size;
+    const double first = std::min(first_[size_t(row)], most);
+    const double last = std::max(last_[size_t(row)], -1.0);
+    const int from = tile_size - static_cast<int>(most - first);
+    return {from, std::max(from, static_cast<int>(last + 1))};
+  }
+
+ private:
+  int rows_;
+  std::array<double, tile_size> first_, last_;
+};
+
+/// The bits [first, last) of a row, some at least.
+uint64_t bits_between(int first, int last) {
+  return ~uint64_t(0) >> (64 - (last - first)) << first;
+}
+
+// Runs are written eight texels at a time: up to seven more are written behind them.
+constexpr size_t at_once = 8;
+
+constexpr auto counts = [] {
+  std::array<float, tile_size> all{};
+  for (size_t i = 0; i < all.size(); ++i) all[i] = float(i);
+  return all;
+}();
+
+/// The numbers of a run, value + i step.
+void write_line(float* to, double value, double step, size_t n) {
+  using L = Lanes<Baseline>;
+  const L from(value), by(step);
+  for (size_t i = 0; i < n; i += at_once)
+    for (size_t k = i; k < i + at_once; k += L::width)
+      (from + L::load(&counts[k]) * by).store(to + k);
+}
+
+void write_number(uint32_t* to, uint32_t number, size_t n) {
+  for (size_t i = 0; i < n; i += at_once)
+    for (size_t k = i; k < i + at_once; ++k) to[k] = number;
 }
 
 /// One tile's texels while they are being found.
@@ -125,15 +189,17 @@ class TileRaster {
     const int x = static_cast<int>(tile) % layout.tiles_across * tile_size;
     const int y = static_cast<int>(tile) / layout.tiles_across * tile_size;
     box_.limit({x, y, x + tile_size - 1, y + tile_size - 1});
-    on_triangle_.fill(nothing);
-    nearest_.fill(nothing);
+    on_triangle_.fill(0);
+    near_border_.fill(0);
+    ends_.fill(0);
   }
 
+  /// Where faces overlap, the one that was added last is seen.
   void add_face(uint32_t face) {
     const std::array<Vec2, 4> t = texels_of_face(layout_, face);
     const auto& v = mesh_.faces[face];
-    const double limit = 0.5 * longest_edge(mesh_, face);
-    for (size_t k = 1; k < 3; ++k)
+    const float limit = float(0.5 * longest_edge(mesh_, face));
+    for (const size_t k : {2, 1})
       add_triangle({t[0], t[k], t[k + 1]},
                    {mesh_.vertices[v[0]], mesh_.vertices[v[k]], mesh_.vertices[v[k + 1]]}, limit,
                    face, static_cast<uint32_t>(k));
@@ -145,12 +211,14 @@ class TileRaster {
     const double reach = layout_.reach * layout_.reach;
     for (int y = box.y0; y <= box.y1; ++y)
       for (int x = box.x0; x <= box.x1; ++x) {
-        const size_t i = local(x, y);
-        if (on_triangle_[i] != nothing) continue;
+        const size_t i = local(x, y), row = size_t(y - box_.y0);
+        const uint64_t bit = uint64_t(1) << (x - box_.x0);
+        if (on_triangle_[row] & bit) continue;
         const Vec2 from = offset(border, x, y, along(border, x, y));
         const double squared = from[0] * from[0] + from[1] * from[1];
-        if (squared > reach || (nearest_[i] != nothing && squared >= distance_[i])) continue;
-        nearest_[i] = index;
+        if (squared > reach || ((near_border_[row] & bit) && squared >= distance_[i])) continue;
+        near_border_[row] |= bit;
+        on_[i] = index;
         distance_[i] = squared;
       }
   }
@@ -158,80 +226,115 @@ class TileRaster {
   void collect(TilePoints& out) {
     out.x = box_.x0;
     out.y = box_.y0;
-    out.width = box_.x1 - box_.x0 + 1;
-    out.height = box_.y1 - box_.y0 + 1;
     out.count = 0;
-    for (int y = box_.y0; y <= box_.y1; ++y)
-      for (int x = box_.x0; x <= box_.x1;) {
-        const size_t i = local(x, y);
-        if (on_triangle_[i] != nothing) {
-          x += collect_run(out, x, y);
-        } else if (nearest_[i] != nothing) {
-          continue_surface(out, x++, y);
+    out.surfaces = surfaces_;
+    for (int row = 0; row < tile_size; ++row) {
+      const uint64_t on_mesh = on_triangle_[size_t(row)];
+      uint64_t left = on_mesh | near_border_[size_t(row)];
+      out.covered[size_t(row)] = left;
+      out.start[size_t(row)] = static_cast<uint16_t>(out.count);
+      while (left != 0) {
+        const int x = std::countr_zero(left);
+        int n = 1;
+        if (on_mesh >> x & 1) {
+          n += std::countr_zero(ends_[size_t(row)] >> x);
+          write_run(out, x, row, size_t(n));
         } else {
-          ++x;
+          continue_surface(out, box_.x0 + x, box_.y0 + row);
         }
+        left &= ~bits_between(x, x + n);
       }
+    }
+    out.start[size_t(tile_size)] = static_cast<uint16_t>(out.count);
   }
 
  private:
   size_t local(int x, int y) const { return size_t(y - box_.y0) * tile_size + size_t(x - box_.x0); }
 
-  void add_triangle(const std::array<Vec2, 3>& t, const std::array<Vec3, 3>& p, double limit,
+  void add_triangle(const std::array<Vec2, 3>& t, const std::array<Vec3, 3>& p, float limit,
                     uint32_t face, uint32_t second) {
+    const Vec2 s{t[1][0] - t[0][0], t[1][1] - t[0][1]}, r{t[2][0] - t[0][0], t[2][1] - t[0][1]};
+    const double inverse = 1 / (s[0] * r[1] - s[1] * r[0]);
+    if (!std::isfinite(inverse)) return;
+    const TexelBox box = texels_around(t, edge_margin, box_);
+    if (box.x0 > box.x1 || box.y0 > box.y1) return;
+    const Vec3 e1 = p[1] - p[0], e2 = p[2] - p[0];
+    const double dx = box.x0 - t[0][0], dy = box.y0 - t[0][1];
     Triangle made;
-    made.t = t[0];
-    made.s = {t[1][0] - t[0][0], t[1][1] - t[0][1]};
-    made.r = {t[2][0] - t[0][0], t[2][1] - t[0][1]};
-    made.inverse = 1 / (made.s[0] * made.r[1] - made.s[1] * made.r[0]);
-    if (!std::isfinite(made.inverse)) return;
-    made.p = p[0];
-    made.e1 = p[1] - p[0];
-    made.e2 = p[2] - p[0];
-    made.normal = floats(unit_or_zero(cross(made.e1, made.e2)));
-    made.limit = float(limit);
+    made.x0 = box.x0 - box_.x0;
+    made.y0 = box.y0 - box_.y0;
+    made.b = {(dx * r[1] - dy * r[0]) * inverse, r[1] * inverse, -r[0] * inverse};
+    made.c = {(s[0] * dy - s[1] * dx) * inverse, -s[1] * inverse, s[0] * inverse};
+    for (size_t k = 0; k < 3; ++k)
+      made.point[k] = {p[0][k] + made.b.value * e1[k] + made.c.value * e2[k],
+                       made.b.by_x * e1[k] + made.c.by_x * e2[k],
+                       made.b.by_y * e1[k] + made.c.by_y * e2[k]};
     made.face = face;
     made.second = second;
     const uint32_t number = static_cast<uint32_t>(triangles_.size());
     triangles_.push_back(made);
-    const TexelBox box = texels_around(t, edge_margin, box_);
-    const double by_b = made.r[1] * made.inverse, by_c = -made.s[1] * made.inverse;
-    for (int y = box.y0; y <= box.y1; ++y) {
-      Span span{double(box.x0), double(box.x1)};
-      const double b = made.b(box.x0, y), c = made.c(box.x0, y);
-      span.keep(b, by_b, box.x0);
-      span.keep(c, by_c, box.x0);
-      span.keep(1 - b - c, -by_b - by_c, box.x0);
-      if (!(span.first <= span.last)) continue;
-      uint32_t* row = &on_triangle_[local(box_.x0, y)];
-      const int last = static_cast<int>(span.last) - box_.x0;
-      for (int i = static_cast<int>(span.first) - box_.x0; i <= last; ++i)
-        if (row[i] == nothing) row[i] = number;
+    surfaces_.push_back({direction_of(cross(e1, e2)), limit});
+    fill(made, box, number);
+  }
+
+  void fill(const Triangle& triangle, const TexelBox& box, uint32_t number) {
+    const Linear &b = triangle.b, &c = triangle.c;
+    Spans spans(box);
+    spans.keep(b);
+    spans.keep(c);
+    spans.keep({1 - b.value - c.value, -b.by_x - c.by_x, -b.by_y - c.by_y});
+    for (int y = 0; y <= box.y1 - box.y0; ++y) {
+      const auto [from, to] = spans.of(y);
+      const int row = y + triangle.y0, first = from + triangle.x0, last = to + triangle.x0;
+      if (first == last) continue;
+      std::fill(&on_[size_t(row * tile_size + first)], &on_[size_t(row * tile_size + last)],
+                number);
+      on_triangle_[size_t(row)] |= bits_between(first, last);
+      ends_[size_t(row)] |= bits_between(last - 1, last);
+      if (first > 0) ends_[size_t(row)] |= bits_between(first - 1, first);
     }
   }
 
-  /// Writes the texels from (x, y) on that lie on the same triangle; how many they are.
-  int collect_run(TilePoints& out, int x, int y) {
-    const size_t first = local(x, y), end = local(box_.x1, y) + 1;
-    size_t last = first;
-    while (last + 1 < end && on_triangle_[last + 1] == on_triangle_[first]) ++last;
-    const size_t n = last - first + 1;
-    const Triangle& on = triangles_[on_triangle_[first]];
-    write_line(out, on.point(x, y), on.point(x + double(n - 1), y), n);
-    for (size_t axis = 0; axis < 3; ++axis)
-      std::fill_n(&out.normal[axis][out.count], n, on.normal[axis]);
-    std::fill_n(&out.limit[out.count], n, on.limit);
-    for (size_t i = 0; i < n; ++i) out.texel[out.count + i] = static_cast<uint16_t>(first + i);
-    if (corners_) write_corners(on, x, y, out.count, n);
+  /// Writes the n texels of a row from column x on, all on the same triangle.
+  void write_run(TilePoints& out, int x, int row, size_t n) {
+    const uint32_t number = on_[size_t(row * tile_size + x)];
+    const Triangle& on = triangles_[number];
+    if (on.is_thin()) {
+      write_thin_run(out, on, x, row, n);
+    } else {
+      for (size_t axis = 0; axis < 3; ++axis)
+        write_line(&out.point[axis][out.count], on.point[axis].at(x - on.x0, row - on.y0),
+                   on.point[axis].by_x, n);
+    }
+    write_number(&out.on[out.count], number, n);
+    if (corners_) write_corners(on, x, row, out.count, n);
     out.count += n;
-    return static_cast<int>(n);
   }
 
-  void write_corners(const Triangle& on, int x, int y, size_t at, size_t n) {
+  /// The weights of a triangle's corners at a texel of the tile, on the triangle in spite of
+  /// rounding.
+  static std::array<double, 3> weights_at(const Triangle& on, int x, int row) {
+    const double b = std::clamp(on.b.at(x - on.x0, row - on.y0), 0.0, 1.0);
+    const double c = std::clamp(on.c.at(x - on.x0, row - on.y0), 0.0, 1 - b);
+    return {1 - b - c, b, c};
+  }
+
+  void write_thin_run(TilePoints& out, const Triangle& on, int x, int row, size_t n) const {
+    const auto& v = mesh_.faces[on.face];
+    const Vec3 &p0 = mesh_.vertices[v[0]], &p1 = mesh_.vertices[v[on.second]],
+               &p2 = mesh_.vertices[v[on.second + 1]];
     for (size_t i = 0; i < n; ++i) {
-      const double b = on.b(x + double(i), y), c = on.c(x + double(i), y);
+      const auto [a, b, c] = weights_at(on, x + static_cast<int>(i), row);
+      for (size_t axis = 0; axis < 3; ++axis)
+        out.point[axis][out.count + i] = float(a * p0[axis] + b * p1[axis] + c * p2[axis]);
+    }
+  }
+
+  void write_corners(const Triangle& on, int x, int row, size_t at, size_t n) {
+    for (size_t i = 0; i < n; ++i) {
+      const auto [a, b, c] = weights_at(on, x + static_cast<int>(i), row);
       corners_->face[at + i] = on.face;
-      auto& weight = corners_->weight[at + i] = {float(1 - b - c), 0, 0, 0};
+      auto& weight = corners_->weight[at + i] = {float(a), 0, 0, 0};
       weight[on.second] = float(b);
       weight[on.second + 1] = float(c);
     }
@@ -261,8 +364,7 @@ class TileRaster {
   }
 
   void continue_surface(TilePoints& out, int x, int y) const {
-    const size_t i = local(x, y);
-    const Border& border = layout_.borders[nearest_[i]];
+    const Border& border = layout_.borders[on_[local(x, y)]];
     const double t = along(border, x, y);
     const Vec2 d = offset(border, x, y, t);
     const auto mixed = [t](const Vec3& a, const Vec3& b) { return a + t * (b - a); };
@@ -271,16 +373,14 @@ class TileRaster {
     const Vec3 beyond = d[0] * by_x + d[1] * by_y;
     const Vec3 point =
         mixed(mesh_.vertices[border.vertex[0]], mesh_.vertices[border.vertex[1]]) + beyond;
-    const Vec3 normal = unit_or_zero(cross(by_x, by_y));
-    for (size_t axis = 0; axis < 3; ++axis) {
-      out.point[axis][out.count] = float(point[axis]);
-      out.normal[axis][out.count] = float(normal[axis]);
-    }
+    for (size_t axis = 0; axis < 3; ++axis) out.point[axis][out.count] = float(point[axis]);
     // Beyond a crease the zero set belongs to another face.
-    out.limit[out.count] =
-        border.crease ? 0.0f : float(0.5 * (longest_edge(mesh_, border.face) + norm(beyond)));
+    const double limit =
+        border.crease ? 0 : 0.5 * (longest_edge(mesh_, border.face) + length_of(beyond));
+    out.on[out.count] = static_cast<uint32_t>(out.surfaces.size());
+    out.surfaces.push_back({direction_of(cross(by_x, by_y)), float(limit)});
     if (corners_) write_corners(border, t, out.count);
-    out.texel[out.count++] = static_cast<uint16_t>(i);
+    ++out.count;
   }
 
   const UvLayout& layout_;
@@ -288,8 +388,12 @@ class TileRaster {
   TexelCorners* corners_;  // or null
   TexelBox box_;
   std::vector<Triangle> triangles_;
-  Numbers on_triangle_, nearest_;             // index of the triangle; of the border
-  std::array<double, tile_texels> distance_;  // to it, squared
+  std::vector<PointSurface> surfaces_;  // of the triangles
+  /// Bits of rows: texels on triangles, those that are the last of a run on the same triangle, and
+  /// those near a border.
+  std::array<uint64_t, tile_size> on_triangle_, ends_, near_border_;
+  Numbers on_;                                // index of the triangle or of the border
+  std::array<double, tile_texels> distance_;  // to the border, squared
 };
 
 }  // namespace
@@ -306,7 +410,9 @@ void fill_bins(UvLayout& layout) {
 
 void find_texels(const UvLayout& layout, size_t tile, TilePoints& points, TexelCorners* corners) {
   TileRaster raster(layout, tile, corners);
-  for (const uint32_t face : layout.faces.of(tile)) raster.add_face(face);
+  // Where faces overlap, the first one is seen.
+  const std::span<const uint32_t> faces = layout.faces.of(tile);
+  for (size_t i = faces.size(); i-- > 0;) raster.add_face(faces[i]);
   for (const uint32_t border : layout.borders_near.of(tile)) raster.add_border(border);
   raster.collect(points);
 }

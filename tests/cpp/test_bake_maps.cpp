@@ -5,11 +5,13 @@
 
 #include <atomic>
 #include <chrono>
+#include <random>
 #include <thread>
 
 #include "bake_scenes.hpp"
 #include "error_of.hpp"
 #include "sanitized.hpp"
+#include "sardf/bake_stages.hpp"
 #include "sardf/error.hpp"
 
 namespace sardf::test {
@@ -120,6 +122,41 @@ TEST(BakeMap, DegenerateFacesDoNoHarm) {
   for (int i = 0; i < 8; ++i) cube.corner_uv.push_back({0.97, 0.97});
   const Baked baked = bake_one(TexelMap(cube, 200), nullptr, coordinates());
   for (const float a : baked.image.samples) ASSERT_TRUE(std::isfinite(a));
+}
+
+// Faces as thin as rounding through centres of texels: what lies on them lies within their corners,
+// whatever rounding does to weights.
+TEST(BakeMap, PointsOfThinFacesLieOnThem) {
+  constexpr int size = 64;
+  std::mt19937_64 random(41);
+  std::uniform_real_distribution<double> any(0, 1);
+  size_t on_face = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec2 centre{(20 + 0.5) / size, (30 + 0.5) / size};
+    const double angle = 6.283 * any(random), x = std::cos(angle), y = std::sin(angle);
+    const double before = 0.3 * any(random), behind = 0.3 * any(random);
+    const double thickness = std::pow(10, -11 - 6 * any(random));
+    Mesh mesh;
+    mesh.vertices = {{1, 1, 1}, {2, 1, 1}, {2, 2, 1}, {1, 2, 1}};
+    mesh.faces = {{0, 1, 2, 3}};
+    for (const auto& [along, across] : {Vec2{-before, -thickness}, Vec2{behind, -thickness},
+                                        Vec2{behind, thickness}, Vec2{-before, thickness}})
+      mesh.corner_uv.push_back(
+          {centre[0] + along * x - across * y, centre[1] + along * y + across * x});
+    const TexelMap map(mesh, size, 0);
+    baking::TilePoints points;
+    baking::find_texels(map.layout(), 0, points);
+    for (size_t k = 0; k < points.count; ++k) {
+      // Beside the face the limit is larger than half of its longest edge.
+      if (points.surfaces[points.on[k]].limit != 0.5f) continue;
+      ++on_face;
+      for (size_t axis = 0; axis < 2; ++axis) {
+        ASSERT_GE(points.point[axis][k], 1 - 1e-6) << thickness;
+        ASSERT_LE(points.point[axis][k], 2 + 1e-6) << thickness;
+      }
+    }
+  }
+  EXPECT_GT(on_face, 100u);
 }
 
 TEST(BakeMap, SaysWhatIsWrong) {

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "povray_gen/guards.hpp"
+#include "povray_gen/linear_terms.hpp"
 #include "sardf/error.hpp"
 
 namespace sardf::povray {
@@ -147,7 +148,8 @@ std::string FunctionWriter::quick(const std::string& name, const Expression& exp
   is_quick_ = true;
   const int root = add_terms(terms, expression);
   is_quick_ = false;
-  return printer_.quick(name, terms, root);
+  const auto [shorter, end] = with_short_linear_terms(terms, root);
+  return printer_.quick(name, shorter, end);
 }
 
 int FunctionWriter::add_terms(Terms& terms, const Expression& root) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -14,6 +13,8 @@ namespace {
 
 // POV-Ray's limit at run time is 1024; functions of the scene call ours.
 constexpr int most_calls = 1000;
+// Characters of a text that is not worth a function of its own.
+constexpr size_t longest_in_place = 400;
 constexpr const char* coordinate_names[] = {"x", "y", "z"};
 
 // How tightly an operator binds; operands that bind less tightly stand in parentheses.
@@ -61,7 +62,13 @@ class FamilyPrinter {
                 InputNames input_names)
       : out_(out), name_(name), terms_(terms), plan_(std::move(plan)), input_names_(input_names) {}
 
-  void declare(int root, int inputs) {
+  /// A function's parameters, its text and the depth of calls in it. The helpers that it needs are
+  /// declared.
+  struct Printed {
+    std::string signature, body;
+    int depth;
+  };
+  Printed print_all(int root, int inputs) {
     const Dominators& dominators = plan_.dominators();
     for (int term = 0; term <= root; ++term) {
       if (!dominators.is_reached(term)) continue;
@@ -72,9 +79,9 @@ class FamilyPrinter {
     }
     start_function();
     for (int i = 0; i < inputs; ++i) name_of(i);
-    const std::string signature = signature_text();
-    const std::string body = print({Piece::Kind::text_of, root, logical, {}});
-    out_.add(name_, signature, body, depth_);
+    std::string signature = signature_text();
+    std::string body = print({Piece::Kind::text_of, root, logical, {}});
+    return {std::move(signature), std::move(body), depth_};
   }
 
  private:
@@ -251,24 +258,41 @@ class FamilyPrinter {
   int depth_ = 0;                      // of the calls in it
 };
 
+std::pair<const Terms*, LetPlan> FunctionPrinter::first_plan(std::span<const Attempt> attempts,
+                                                             int root) {
+  for (const auto& [terms, simple] : attempts.first(attempts.size() - 1)) {
+    try {
+      return {terms, LetPlan(*terms, root, simple)};
+    } catch (const Error&) {
+      continue;
+    }
+  }
+  const auto& [terms, simple] = attempts.back();
+  return {terms, LetPlan(*terms, root, simple)};
+}
+
 void FunctionPrinter::declare(const std::string& name, const Terms& terms, int root, int inputs,
                               InputNames input_names) {
   // A costly branch may need very many values that could be used up on the way to it.
   const Terms eager = terms.without_branches();
-  const std::pair<const Terms*, LetPlan::Simple> attempts[] = {{&terms, LetPlan::Simple::bind},
-                                                               {&eager, LetPlan::Simple::bind},
-                                                               {&eager, LetPlan::Simple::repeat}};
-  for (const auto& [attempted, simple] : attempts) {
-    std::optional<LetPlan> plan;
-    try {
-      plan.emplace(*attempted, root, simple);
-    } catch (const Error&) {
-      if (simple == LetPlan::Simple::repeat) throw;
-      continue;
-    }
-    FamilyPrinter(*this, name, *attempted, std::move(*plan), input_names).declare(root, inputs);
-    return;
-  }
+  const Attempt attempts[] = {{&terms, LetPlan::Simple::bind},
+                              {&eager, LetPlan::Simple::bind},
+                              {&eager, LetPlan::Simple::repeat}};
+  auto [planned, plan] = first_plan(attempts, root);
+  FamilyPrinter printer(*this, name, *planned, std::move(plan), input_names);
+  const FamilyPrinter::Printed printed = printer.print_all(root, inputs);
+  add(name, printed.signature, printed.body, printed.depth);
+}
+
+std::string FunctionPrinter::quick(const std::string& base, const Terms& terms, int root) {
+  const Terms eager = terms.without_branches();
+  const Attempt attempts[] = {{&terms, LetPlan::Simple::repeat}, {&eager, LetPlan::Simple::repeat}};
+  auto [planned, plan] = first_plan(attempts, root);
+  FamilyPrinter printer(*this, base, *planned, std::move(plan), InputNames::coordinates);
+  const FamilyPrinter::Printed printed = printer.print_all(root, 3);
+  if (printed.body.size() <= longest_in_place) return printed.body;
+  const Call declared = helper(base, printed.signature, printed.body, printed.depth);
+  return declared.name + "(" + printed.signature + ")";
 }
 
 FunctionPrinter::Call FunctionPrinter::helper(const std::string& base, const std::string& signature,

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "povray_gen/let_plan.hpp"
@@ -26,6 +28,11 @@ class FunctionPrinter {
   void declare(const std::string& name, const Terms& terms, int root, int inputs,
                InputNames input_names);
 
+  /// The term as text in x, y and z for a place where it is evaluated very often: what is as quick
+  /// to compute again as to pass is not passed. A text that is too long to stand there is declared
+  /// as `name`, and called. Its helpers are named as above.
+  std::string quick(const std::string& name, const Terms& terms, int root);
+
   /// Adds text that declares what functions after it call.
   void insert(const std::string& text) { text_ += text; }
 
@@ -36,6 +43,9 @@ class FunctionPrinter {
 
  private:
   friend class FamilyPrinter;
+  using Attempt = std::pair<const Terms*, LetPlan::Simple>;
+  /// The first plan that is possible; the last attempt's Error if none is.
+  std::pair<const Terms*, LetPlan> first_plan(std::span<const Attempt> attempts, int root);
   struct Call {
     std::string name;
     int depth = 0;  // of calls inside each other

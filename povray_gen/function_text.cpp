@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "povray_gen/guards.hpp"
+#include "povray_gen/linear_terms.hpp"
 #include "sardf/error.hpp"
 
 namespace sardf::povray {
@@ -12,12 +13,25 @@ namespace {
 
 // A call of a helper is no shorter than this many operators.
 constexpr int inlined_operations = 3;
+// Where text is evaluated very often, passing inputs costs as much as this many.
+constexpr int quick_operations = 12;
 constexpr size_t comment_width = 95;
 
 InputNames input_names(const OperationInfo& info) {
   const bool of_space =
       info.kind == Kind::solid || info.kind == Kind::plane || info.kind == Kind::feature;
   return of_space ? InputNames::coordinates : InputNames::parameters;
+}
+
+// Whether the formula has at most so many operators and calls.
+bool is_short(const Trace& trace, int most) {
+  Terms own;
+  std::vector<int> inputs;
+  for (const TraceStep& step : trace.steps()) {
+    if (step.kind == TraceStep::Kind::input) inputs.push_back(own.input(step.index));
+  }
+  const int root = own.append(trace, inputs);
+  return own.operations(root, most + 1) <= most;
 }
 
 // What a reader has to know about samples, in lines of comment.
@@ -128,6 +142,16 @@ std::string FunctionWriter::declare_function(const std::string& name,
   return name;
 }
 
+std::string FunctionWriter::quick(const std::string& name, const Expression& expression) {
+  Terms terms;
+  for (int axis = 0; axis < 3; ++axis) terms.input(axis);
+  is_quick_ = true;
+  const int root = add_terms(terms, expression);
+  is_quick_ = false;
+  const auto [shorter, end] = with_short_linear_terms(terms, root);
+  return printer_.quick(name, shorter, end);
+}
+
 int FunctionWriter::add_terms(Terms& terms, const Expression& root) {
   const Nodes nodes(root);
   const size_t n = nodes.order().size();
@@ -135,7 +159,7 @@ int FunctionWriter::add_terms(Terms& terms, const Expression& root) {
   needed[n - 1] = true;
   for (size_t i = n; i-- > 0;) {
     if (!needed[i]) continue;
-    called[i] = named_.contains(nodes.order()[i]) && nodes.is_private(int(i));
+    called[i] = !is_quick_ && named_.contains(nodes.order()[i]) && nodes.is_private(int(i));
     if (called[i]) continue;
     for (const Expression& input : nodes.order()[i]->arguments()) needed[nodes.at(input)] = true;
   }
@@ -192,6 +216,11 @@ int FunctionWriter::add_guarded_call(Terms& terms, const Node& node, std::span<c
 int FunctionWriter::add_call(Terms& terms, const Operation& operation,
                              std::span<const int> inputs) {
   const OperationInfo& info = operation.info();
+  if (is_quick_ && operation.has_formula()) {
+    Trace trace(info.arity);
+    operation.record(trace);
+    if (is_short(trace, quick_operations)) return terms.append(trace, inputs);
+  }
   const auto [known, added] = operations_.try_emplace({info.name, operation.numbers()});
   if (added) {
     const auto* sampled = dynamic_cast<const SampledFunction*>(&operation);
@@ -211,13 +240,13 @@ std::string FunctionWriter::declare_operation(const Operation& operation) {
   if (!operation.has_formula()) {
     throw Error("'" + info.name + "' has no formula that POV-Ray could evaluate");
   }
+  Trace trace(info.arity);
+  operation.record(trace);
+  if (is_short(trace, inlined_operations)) return "";
   Terms own;
   std::vector<int> own_inputs;
   for (int i = 0; i < info.arity; ++i) own_inputs.push_back(own.input(i));
-  Trace trace(info.arity);
-  operation.record(trace);
   const int root = own.append(trace, own_inputs);
-  if (own.operations(root, inlined_operations + 1) <= inlined_operations) return "";
   const std::string name = names_.numbered(info.name);
   printer_.declare(name, own, root, info.arity, input_names(info));
   return name;

@@ -38,6 +38,9 @@ class FunctionWriter {
   /// need are declared first. Throws Error naming the expression that POV-Ray cannot evaluate.
   std::vector<std::string> declare(std::span<const NamedExpression> expressions);
   std::string declare(const NamedExpression& expression);
+  /// The expression as text in x, y and z that POV-Ray evaluates as fast as it can: operations of a
+  /// dozen steps stand there themselves. `name`: what helper functions are named after.
+  std::string quick(const std::string& name, const Expression& expression);
 
   /// All declarations so far.
   const std::string& text() const { return printer_.text(); }
@@ -55,6 +58,7 @@ class FunctionWriter {
 
   Names& names_;
   FunctionPrinter printer_;
+  bool is_quick_ = false;
   std::unordered_map<const Node*, std::string> named_;
   std::vector<Expression> kept_alive_;              // so that a named node's address stays its own
   std::map<OperationKey, std::string> operations_;  // the helper, or "" for an inlined operation

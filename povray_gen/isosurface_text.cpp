@@ -3,6 +3,7 @@
 #include <unordered_map>
 
 #include "povray_gen/scene_text.hpp"
+#include "povray_gen/sharp_edges.hpp"
 #include "povray_gen/vector_text.hpp"
 #include "sardf/error.hpp"
 #include "sardf/smooth_formula.hpp"
@@ -27,10 +28,10 @@ std::string one_isosurface(const std::string& value, const BoundingBox& box,
 }
 
 // POV-Ray's inside is where the function is negative.
-std::string negative(const std::string& function, double band) {
-  if (!(band < infinity)) return "-(" + function + "(x, y, z))";
+std::string negative(const std::string& value, double band) {
+  if (!(band < infinity)) return "-(" + value + ")";
   const std::string most = number_text(band);
-  return "min(" + most + ", max(-" + most + ", -(" + function + "(x, y, z))))";
+  return "min(" + most + ", max(-" + most + ", -(" + value + ")))";
 }
 
 }  // namespace
@@ -64,17 +65,16 @@ std::vector<Piece> isosurface_pieces(const PovrayScene& scene, const GradientBou
   // What the formula is worth further from the surface shows nowhere.
   options.exact_within = 2 * options.reach * whole.value;
   options.progress = progress;
-  return pieces_of(scene.solid, scene.bounds, options);
+  return pieces_of(with_sharp_edges(scene.solid), scene.bounds, options);
 }
 
-std::vector<std::string> declare_pieces(const std::vector<Piece>& pieces, FunctionWriter& writer,
-                                        const Expression& whole, const std::string& solid) {
-  std::unordered_map<const Node*, std::string> known{{whole.get(), solid}};
+std::vector<std::string> texts_of_pieces(const std::vector<Piece>& pieces, FunctionWriter& writer) {
+  std::unordered_map<const Node*, std::string> known;
   std::vector<std::string> out;
   for (const Piece& piece : pieces) {
-    std::string& name = known[piece.solid.get()];
-    if (name.empty()) name = writer.declare({"solid_near", piece.solid});
-    out.push_back(name);
+    std::string& text = known[piece.solid.get()];
+    if (text.empty()) text = writer.quick("solid_near", piece.solid);
+    out.push_back(text);
   }
   return out;
 }
@@ -82,20 +82,20 @@ std::vector<std::string> declare_pieces(const std::vector<Piece>& pieces, Functi
 std::string isosurface_macro(const PovrayScene& scene, const std::string& name,
                              const std::string& csg, const std::string& solid,
                              const GradientBound& whole, const std::vector<Piece>& pieces,
-                             const std::vector<std::string>& functions) {
+                             const std::vector<std::string>& texts) {
   const double accuracy = isosurface_accuracy * scene.bounds.diagonal();
   // A macro, because copies of a declared isosurface do not report a max_gradient that is too
   // small.
   std::string out = "#macro " + name + "()\n";
-  const auto closed = [&](const std::string& function, const Piece& piece) {
-    return one_isosurface(negative(function, piece.band), piece.box, smaller(piece, whole),
-                          accuracy, "#if (" + csg + ") all_intersections #end");
+  const auto closed = [&](const std::string& text, const Piece& piece) {
+    return one_isosurface(negative(text, piece.band), piece.box, smaller(piece, whole), accuracy,
+                          "#if (" + csg + ") all_intersections #end");
   };
-  if (pieces.size() == 1) return out + closed(functions[0], pieces[0]) + "#end\n";
-  out += "#if (" + csg + ")\n" + closed(solid, {scene.bounds, scene.solid}) +
+  if (pieces.size() == 1) return out + closed(texts[0], pieces[0]) + "#end\n";
+  out += "#if (" + csg + ")\n" + closed(solid + "(x, y, z)", {scene.bounds, scene.solid}) +
          "#else\n  // The surface passes through these boxes only.\n" + "  union {\n";
   for (size_t i = 0; i < pieces.size(); ++i) {
-    out += one_isosurface(negative(functions[i], pieces[i].band), pieces[i].box,
+    out += one_isosurface(negative(texts[i], pieces[i].band), pieces[i].box,
                           smaller(pieces[i], whole), accuracy, "open");
   }
   return out + "  }\n#end\n#end\n";

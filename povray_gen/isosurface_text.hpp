@@ -34,16 +34,15 @@ std::vector<Piece> isosurface_pieces(const PovrayScene& scene, const GradientBou
 /// The bound that counts in a piece: its own is proven.
 GradientBound smaller(const Piece& piece, const GradientBound& whole);
 
-/// Declares the functions of the pieces, then a macro `name` without parameters that gives the
-/// solid: one isosurface if the identifier `csg` is true there, else a union of the pieces.
-/// `solid`: the function of the whole; `whole`: the bound of its gradient.
+/// Declares a macro `name` without parameters that gives the solid: one isosurface if the
+/// identifier `csg` is true there, else a union of the pieces. `solid`: the function of the whole;
+/// `whole`: the bound of its gradient; `texts`: the fields of the pieces.
 std::string isosurface_macro(const PovrayScene& scene, const std::string& name,
                              const std::string& csg, const std::string& solid,
                              const GradientBound& whole, const std::vector<Piece>& pieces,
-                             const std::vector<std::string>& functions);
+                             const std::vector<std::string>& texts);
 
-/// Declares the functions of the pieces; equal ones are one.
-std::vector<std::string> declare_pieces(const std::vector<Piece>& pieces, FunctionWriter& writer,
-                                        const Expression& whole, const std::string& solid);
+/// The fields of the pieces as text in x, y and z; what helper functions they need is declared.
+std::vector<std::string> texts_of_pieces(const std::vector<Piece>& pieces, FunctionWriter& writer);
 
 }  // namespace sardf::povray

@@ -16,13 +16,13 @@ namespace sardf::povray {
 namespace {
 
 // Cells along the longest side of the bounds, a power of two.
-constexpr int finest = 32;
+constexpr int finest = 64;
 // Halvings of the bounds: at most so many pieces.
 constexpr int most_halvings = 7;
 // What a ray costs that meets a piece, in steps of a formula: POV-Ray's own work, and the calls
 // that find that nothing is there.
-constexpr double work_per_box = 60;
-constexpr double calls_per_box = 4;
+constexpr double work_per_box = 20;
+constexpr double calls_per_box = 2;
 // What of the time a split has to save to be worth the text.
 constexpr double worthwhile = 0.97;
 // Boxes for the bounds of the gradient: of all pieces, and of each.

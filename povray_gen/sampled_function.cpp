@@ -61,23 +61,29 @@ void SampledFunction::partials(const double* const* in, double* out, double* con
   }
 }
 
-Interval SampledFunction::interval(const Interval* in) const {
-  const Interval range = samples_->range();
-  if (!(error_.proven < infinity)) return range;
+Slope SampledFunction::sampled_over(const Interval* in) const {
+  std::array<Interval, 3> box{};
+  for (int k = 0; k < info().arity; ++k) box[size_t(k)] = in[k];
+  Slope out = samples_->over(box);
+  if (!(error_.proven < infinity)) return out;
   std::array<Interval, max_arity> inside;
   for (int k = 0; k < info().arity; ++k) {
-    const Interval& box = samples_->grid().box[size_t(k)];
-    inside[k] = {min(max(in[k].lo, box.lo), box.hi), min(max(in[k].hi, box.lo), box.hi)};
+    const Interval& grid = samples_->grid().box[size_t(k)];
+    inside[k] = {min(max(in[k].lo, grid.lo), grid.hi), min(max(in[k].hi, grid.lo), grid.hi)};
   }
   const Interval error{-error_.proven, error_.proven};
-  return intersect(range, exact_->interval(inside.data()) + error);
+  out.value = intersect(out.value, exact_->interval(inside.data()) + error);
+  return out;
 }
+
+Interval SampledFunction::interval(const Interval* in) const { return sampled_over(in).value; }
 
 Slope SampledFunction::slope(const Slope* in) const {
   std::array<Interval, max_arity> values;
   for (int k = 0; k < info().arity; ++k) values[k] = in[k].value;
-  const std::span partials(samples_->partials().data(), size_t(info().arity));
-  return slope_from(in, interval(values.data()), partials, samples_->steepest());
+  const Slope sampled = sampled_over(values.data());
+  const std::span partials(sampled.partial.data(), size_t(info().arity));
+  return slope_from(in, sampled.value, partials, sampled.length);
 }
 
 }  // namespace sardf::povray

@@ -41,6 +41,7 @@ class SampledFunction final : public DataOperation {
   Slope slope(const Slope* in) const override;
 
  private:
+  Slope sampled_over(const Interval* in) const;
   Vec3 point(const double* const* in, size_t i) const;
 
   OperationPointer exact_;

@@ -29,26 +29,6 @@ Interval range_of(std::span<const double> values, Work& work) {
 
 }  // namespace
 
-std::array<int, 3> SampleGrid::position(size_t index) const {
-  const size_t nx = size_t(counts[0]), ny = size_t(counts[1]);
-  return {int(index % nx), int(index / nx % ny), int(index / nx / ny)};
-}
-
-size_t SampleGrid::index(const std::array<int, 3>& p) const {
-  return size_t(p[0]) + size_t(counts[0]) * (size_t(p[1]) + size_t(counts[1]) * size_t(p[2]));
-}
-
-Vec3 SampleGrid::place(const Vec3& at) const {
-  Vec3 out;
-  for (int k = 0; k < 3; ++k) out[k] = min(box[k].lo + at[k] * step(k), box[k].hi);
-  return out;
-}
-
-Vec3 SampleGrid::point(size_t index) const {
-  const std::array<int, 3> p = position(index);
-  return place({double(p[0]), double(p[1]), double(p[2])});
-}
-
 Samples::Samples(const SampleGrid& grid, std::span<const double> values, Work& work)
     : grid_(grid), codes_(std::make_unique_for_overwrite<uint32_t[]>(values.size())) {
   range_ = range_of(values, work);
@@ -62,61 +42,26 @@ Samples::Samples(const SampleGrid& grid, std::span<const double> values, Work& w
     }
   });
   range_.hi += 1e-15 * range_.magnitude();
-  bound_slopes(work);
+  slopes_.emplace(grid_, std::span<const uint32_t>(codes_.get(), values.size()), work);
 }
 
 double Samples::factor() const { return scale_ * whole; }
 
-// A partial derivative of a trilinear cell is a mean of the difference quotients along the cell's
-// four edges in that direction: it lies between them, and the largest ones bound the gradient.
-void Samples::bound_slopes(Work& work) {
-  const size_t nx = size_t(grid_.counts[0]);
-  const size_t rows = grid_.size() / nx;
-  std::vector<double> lengths(rows, 0);
-  std::vector<std::array<Interval, 3>> partials(rows);
-  const std::array<size_t, 3> stride{grid_.varies(0) ? size_t(1) : 0, grid_.varies(1) ? nx : 0,
-                                     grid_.varies(2) ? nx * size_t(grid_.counts[1]) : 0};
-  std::array<double, 3> quotient{};
+Slope Samples::over(const std::array<Interval, 3>& box) const {
+  const SampleBounds found = slopes_->over(box, {codes_.get(), grid_.size()});
+  constexpr double rounding = 16;
+  const auto widened = [](double lo, double hi) {
+    return Interval{rounded_down(lo, rounding), rounded_up(hi, rounding)};
+  };
+  Slope out;
+  const double slack = 1e-15 * range_.magnitude();
+  out.value = intersect(range_, {low_ + scale_ * (found.codes.lo - 1) - slack,
+                                 low_ + scale_ * (found.codes.hi - 1) + slack});
   for (int k = 0; k < 3; ++k) {
-    if (grid_.varies(k)) quotient[k] = scale_ / grid_.step(k);
+    out.partial[k] = widened(scale_ * found.partials[k].lo, scale_ * found.partials[k].hi);
   }
-  work.run(rows, rows_at_once, [&](size_t first, size_t last) {
-    for (size_t row = first; row < last; ++row) {
-      const std::array<int, 3> at = grid_.position(row * nx);
-      if ((grid_.varies(1) && at[1] + 1 == grid_.counts[1]) ||
-          (grid_.varies(2) && at[2] + 1 == grid_.counts[2])) {
-        continue;  // the cells of the row before reach here
-      }
-      const size_t cells = grid_.varies(0) ? nx - 1 : 1;
-      for (size_t cell = row * nx; cell < row * nx + cells; ++cell) {
-        double squares = 0;
-        for (int k = 0; k < 3; ++k) {
-          if (stride[k] == 0) continue;
-          Interval change{infinity, -infinity};
-          for (size_t a : {size_t(0), stride[(k + 1) % 3]}) {
-            for (size_t b : {size_t(0), stride[(k + 2) % 3]}) {
-              const size_t from = cell + a + b;
-              const double d = double(codes_[from + stride[k]]) - double(codes_[from]);
-              change = {min(change.lo, d), max(change.hi, d)};
-            }
-          }
-          const Interval slope{change.lo * quotient[k], change.hi * quotient[k]};
-          partials[row][k] = hull(partials[row][k], slope);
-          squares += square(slope).hi;
-        }
-        lengths[row] = max(lengths[row], squares);
-      }
-    }
-  });
-  // Outside the box the function is constant: each enclosure holds 0 as well.
-  for (size_t row = 0; row < rows; ++row) {
-    steepest_ = max(steepest_, lengths[row]);
-    for (int k = 0; k < 3; ++k) partials_[k] = hull(partials_[k], partials[row][k]);
-  }
-  for (Interval& partial : partials_) {
-    partial = {rounded_down(partial.lo, 8), rounded_up(partial.hi, 8)};
-  }
-  steepest_ = rounded_up(std::sqrt(steepest_), 8);
+  out.length = rounded_up(scale_ * std::sqrt(found.squares), rounding);
+  return out;
 }
 
 double Samples::value(const Vec3& at, Vec3* gradient) const {

@@ -3,35 +3,15 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
-#include "sardf/numbers/interval.hpp"
+#include "povray_gen/sample_slopes.hpp"
+#include "sardf/operation.hpp"
 #include "sardf/output_file.hpp"
-#include "sardf/vec.hpp"
-#include "sardf/work.hpp"
 
 namespace sardf::povray {
-
-/// Points in rows along each axis; x runs fastest.
-struct SampleGrid {
-  std::array<Interval, 3> box;         ///< from the first point to the last
-  std::array<int, 3> counts{1, 1, 1};  ///< points along each axis; 1: the value does not change
-
-  bool varies(int axis) const { return counts[axis] > 1; }
-  double step(int axis) const {
-    return varies(axis) ? (box[axis].hi - box[axis].lo) / (counts[axis] - 1) : 0;
-  }
-  /// Along one axis in the density file: one more layer follows the last.
-  int stored(int axis) const { return varies(axis) ? counts[axis] + 1 : 1; }
-  size_t size() const { return size_t(counts[0]) * size_t(counts[1]) * size_t(counts[2]); }
-  double stored_size() const { return double(stored(0)) * stored(1) * stored(2); }
-  std::array<int, 3> position(size_t index) const;
-  size_t index(const std::array<int, 3>& position) const;
-  Vec3 point(size_t index) const;
-  /// The point `at` steps from the first.
-  Vec3 place(const Vec3& at) const;
-};
 
 /// Between the samples lies what `density_file df3 ... interpolate 1` computes: trilinear
 /// interpolation, exact to 3e-16 of the range of values (tried in POV-Ray 3.7.0.10). It stays
@@ -51,10 +31,8 @@ class Samples {
 
   /// Encloses all values.
   Interval range() const { return range_; }
-  /// Encloses each partial derivative between the samples.
-  const std::array<Interval, 3>& partials() const { return partials_; }
-  /// Bounds the gradient's length.
-  double steepest() const { return steepest_; }
+  /// Encloses the values and each partial derivative over a box, and bounds the gradient's length.
+  Slope over(const std::array<Interval, 3>& box) const;
   /// Bound of what the storage as whole numbers of 32 bits changes.
   double rounding() const { return 0.5 * scale_ + 1e-15 * range_.magnitude(); }
   /// Where the function is farthest from linear: up to `count` samples, at most one of each row.
@@ -69,15 +47,13 @@ class Samples {
   void write_to(OutputFile& file, const Progress& progress = {}) const;
 
  private:
-  void bound_slopes(Work& work);
   double bend(size_t index) const;
 
   SampleGrid grid_;
   std::unique_ptr<uint32_t[]> codes_;  // value = low_ + scale_ × (code - 1)
   double low_ = 0, scale_ = 0;
   Interval range_;
-  std::array<Interval, 3> partials_;
-  double steepest_ = 0;
+  std::optional<SampleSlopes> slopes_;
 };
 
 }  // namespace sardf::povray

@@ -137,7 +137,7 @@ std::string include_text(const SceneSamples& samples, Names& names, const Identi
   std::vector<NamedExpression> all(scene.fields);
   all.push_back({"solid", scene.solid, samples.solid_comment});
   const std::string solid = writer.declare(all).back();
-  const std::vector<std::string> near = declare_pieces(pieces, writer, scene.solid, solid);
+  const std::vector<std::string> near = texts_of_pieces(pieces, writer);
   const std::string pigment = color_pigment(samples, ids.pigment, writer);
   const double step = normal_step * scene.bounds.diagonal();
   std::string out = filled(

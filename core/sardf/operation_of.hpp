@@ -12,6 +12,11 @@
 //   static constexpr bool distance = true;         exact Euclidean distance in its inputs
 //   static constexpr std::array<int, arity> monotone;
 //                                      sign of each partial derivative everywhere
+//   std::array<Interval, arity> partials(const std::array<Interval, arity>&) const;
+//                                      encloses its partial derivatives better than the formula
+//   std::array<double, arity> top() const;
+//                                      of a distance that falls with the distance from here along
+//                                      each axis: it is enclosed by its values at two corners
 //   double gain(Interval, ...) const;  bound of the sum of |partials|
 //   double steepness(Interval x, Interval y, double longer, Interval product) const;
 //                                      of a blend: bound of the gradient's length where those of
@@ -131,6 +136,9 @@ class OperationOf final : public Operation {
     if constexpr (is_monotone<Op>) {
       if (rounding() <= 1 || !may_overflow(in)) return at_end_points(in);
     }
+    if constexpr (has_top) {
+      if (!may_overflow(in)) return at_corners(in);
+    }
     const Interval natural = apply(op_, in);
     if constexpr (is_exact_distance<Op>) {
       return may_overflow(in) ? natural : intersect(natural, around_centre(in));
@@ -183,6 +191,7 @@ class OperationOf final : public Operation {
     if constexpr (is_monotone<Op>) {
       return widened(at_end_points(values.data()), values.data());
     }
+    if constexpr (has_top) return {widened(at_corners(values.data()), values.data()).value, false};
     if constexpr (is_exact_distance<Op>) {
       const Interval near = widened(around_centre(values.data()), values.data()).value;
       return {intersect(near, natural_range(in).value), false};
@@ -231,6 +240,8 @@ class OperationOf final : public Operation {
 
  private:
   static double times(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
+
+  static constexpr bool has_top = requires(const Op& op) { op.top(); };
 
   static constexpr double rounding() {
     if constexpr (requires { Op::rounding; }) return Op::rounding;
@@ -304,6 +315,25 @@ class OperationOf final : public Operation {
     return Interval::all();
   }
 
+  // The least value is that at the corner farthest from the top, the largest that at the nearest.
+  Interval at_corners(const Interval* in) const {
+    if constexpr (has_top) {
+      const std::array<double, arity> top = op_.top();
+      std::array<double, arity> far, near;
+      for (int k = 0; k < arity; ++k) {
+        far[k] = top[k] - in[k].lo > in[k].hi - top[k] ? in[k].lo : in[k].hi;
+        near[k] = min(max(top[k], in[k].lo), in[k].hi);
+      }
+      const double lo = apply(op_, far.data()), hi = apply(op_, near.data());
+      // The rounding of the value here and of that at the corner.
+      const double below = 2 * rounding_error(largest(in), lo);
+      const double above = 2 * rounding_error(largest(in), hi);
+      return {std::isnan(lo) || below == infinity ? -infinity : rounded_down(lo - below),
+              std::isnan(hi) || above == infinity ? infinity : rounded_up(hi + above)};
+    }
+    return Interval::all();
+  }
+
   // f(centre) + Σ partial · (input - centre), which holds all values of a smooth function.
   Interval by_mean_value(const Interval* in) const {
     std::array<Interval, arity> centre;
@@ -329,9 +359,7 @@ class OperationOf final : public Operation {
   }
 
   std::array<Interval, arity> local_partials(const Interval* in) const {
-    std::array<DualInterval, arity> at;
-    for (int k = 0; k < arity; ++k) at[k] = DualInterval::variable(in[k], k);
-    std::array<Interval, arity> by = apply(op_, at.data()).d;
+    std::array<Interval, arity> by = natural_partials(in);
     for (int k = 0; k < arity; ++k) {
       // A NaN bound comes of inf - inf: nothing is known.
       if (!(by[k].lo <= by[k].hi)) by[k] = Interval::all();
@@ -342,6 +370,18 @@ class OperationOf final : public Operation {
       }
     }
     return by;
+  }
+
+  std::array<Interval, arity> natural_partials(const Interval* in) const {
+    if constexpr (requires(std::array<Interval, arity> values) { op_.partials(values); }) {
+      std::array<Interval, arity> values;
+      std::copy_n(in, arity, values.begin());
+      return op_.partials(values);
+    } else {
+      std::array<DualInterval, arity> at;
+      for (int k = 0; k < arity; ++k) at[k] = DualInterval::variable(in[k], k);
+      return apply(op_, at.data()).d;
+    }
   }
 
   double gain_with(const std::array<Interval, arity>& partials, const Interval* in) const {

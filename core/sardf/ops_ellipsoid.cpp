@@ -16,6 +16,8 @@ constexpr double grades[] = {1e-12, 1e-5, 0.01, 0.1, 0.4, 0.8, 1, 4};
 constexpr double rim_grades[] = {-0.1, -0.01, -1e-3, -1e-4, -1e-6, -1e-9, -1e-12, -1e-15, 0,
                                  0.1,  0.01,  1e-3,  1e-4,  1e-6,  1e-9,  1e-12,  1e-15};
 constexpr double rim_directions[] = {0, 0.3, 1};
+// How far from a computed root its proven bounds are tried, relative to it.
+constexpr double slacks[] = {1e-14, 1e-11, 1e-7, 1e-3};
 
 }  // namespace
 
@@ -92,6 +94,93 @@ int EllipsoidDistance<N>::steps_needed_near_rim(const std::array<double, N>& dir
     steps = std::max(steps, steps_needed(y));
   }
   return steps;
+}
+
+template <int N>
+Interval EllipsoidDistance<N>::excess(int i) const {
+  const double least = radii_[shortest_];
+  return (Interval(radii_[i]) - least) * (Interval(radii_[i]) + least);
+}
+
+template <int N>
+Interval EllipsoidDistance<N>::sum_of_squares(const std::array<double, N>& y, double s) const {
+  Interval sum(0.0);
+  for (int i = 0; i < N; ++i) {
+    sum = sum + square(Interval(radii_[i]) * y[i] / (Interval(s) + excess(i)));
+  }
+  return sum;
+}
+
+// G falls with s and rises with each y_i, so the root rises with them. That a number lies below it
+// or above is proven by G there. Without a proof, 0 is below, and |z| above: G(|z|) <= 1.
+template <int N>
+Interval EllipsoidDistance<N>::root_between(const std::array<Interval, N>& y) const {
+  std::array<double, N> near, far, near_z, far_z;
+  Interval squares(0.0);
+  for (int i = 0; i < N; ++i) {
+    near[i] = y[i].lo;
+    far[i] = y[i].hi;
+    const double trace = i == shortest_ ? radii_[i] * 1e-18 : 0;
+    near_z[i] = radii_[i] * max(near[i], trace);
+    far_z[i] = radii_[i] * max(far[i], trace);
+    squares = squares + square(Interval(radii_[i]) * far[i]);
+  }
+  Interval s{0, sqrt(squares).hi};
+  const double low = root(near_z), high = root(far_z);
+  for (double slack : slacks) {
+    if (!(sum_of_squares(near, low * (1 - slack)).lo >= 1)) continue;
+    s.lo = low * (1 - slack);
+    break;
+  }
+  for (double slack : slacks) {
+    if (!(sum_of_squares(far, high * (1 + slack)).hi <= 1)) continue;
+    s.hi = high * (1 + slack);
+    break;
+  }
+  return s;
+}
+
+// It is monotone in s.
+template <int N>
+Interval EllipsoidDistance<N>::quotient(int i, int k, const Interval& s) const {
+  if (radii_[i] == radii_[k]) return 1;
+  const auto at = [&](double end) -> Interval {
+    if (!(end < infinity)) return 1;
+    const Interval below = Interval(end) + excess(k);
+    // Then k is the shortest axis.
+    if (!(below.lo > 0)) return {1, infinity};
+    return (Interval(end) + excess(i)) / below;
+  };
+  return hull(at(s.lo), at(s.hi));
+}
+
+// The outer normal is along y_k / (s + excess_k), which times s + excess_i is y_k quotient(i, k).
+template <int N>
+std::array<Interval, N> EllipsoidDistance<N>::partials(const std::array<Interval, N>& at) const {
+  std::array<Interval, N> y, out;
+  for (int i = 0; i < N; ++i) y[i] = abs(at[i]);
+  const Interval s = root_between(y);
+  for (int i = 0; i < N; ++i) {
+    // The squares of all components but i.
+    Interval others(0.0);
+    for (int k = 0; k < N; ++k) {
+      if (k != i) others = others + square(y[k] * quotient(i, k, s));
+    }
+    const auto share = [](double own, double other) {
+      const Interval squared = square(Interval(own));
+      return sqrt(squared / (squared + other));
+    };
+    // Where all may be 0 or infinite, nothing is known.
+    Interval size{0, 1};
+    if (y[i].hi < infinity && others.lo < infinity && !(y[i].hi == 0 && others.lo == 0)) {
+      size.hi = min(1.0, share(y[i].hi, others.lo).hi);
+    }
+    if (y[i].lo > 0 && y[i].lo < infinity && others.hi < infinity) {
+      size.lo = max(0.0, share(y[i].lo, others.hi).lo);
+    }
+    out[i] = at[i].lo >= 0 ? -size : at[i].hi <= 0 ? size : Interval{-size.hi, size.hi};
+  }
+  return out;
 }
 
 template class EllipsoidDistance<2>;

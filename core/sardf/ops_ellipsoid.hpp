@@ -42,7 +42,20 @@ class EllipsoidDistance {
 
   int steps() const { return steps_; }
 
+  /// Encloses the partial derivatives: the root rises with each |at_i|, so those of the nearest and
+  /// of the farthest corner enclose it.
+  std::array<Interval, N> partials(const std::array<Interval, N>& at) const;
+
  private:
+  /// Encloses e_i² - min(e)².
+  Interval excess(int i) const;
+  /// Encloses (s + excess_i) / (s + excess_k) over s.
+  Interval quotient(int i, int k, const Interval& s) const;
+  /// Encloses G(s) at a point y.
+  Interval sum_of_squares(const std::array<double, N>& y, double s) const;
+  /// Encloses the root over these y, none of them negative.
+  Interval root_between(const std::array<Interval, N>& y) const;
+
   // The root lies between the largest z_i - excess_i and |z|, which may be many decades apart near
   // the medial disc: halving their logarithm's range comes before Newton's iteration.
   template <class T>
@@ -109,6 +122,10 @@ struct Ellipsoid : Solid {
   T eval(T x, T y, T z) const {
     return distance_to.eval<T>({x - T(center[0]), y - T(center[1]), z - T(center[2])});
   }
+  std::array<Interval, 3> partials(const std::array<Interval, 3>& in) const {
+    return distance_to.partials({in[0] - center[0], in[1] - center[1], in[2] - center[2]});
+  }
+  std::array<double, 3> top() const { return center; }
 
  private:
   EllipsoidDistance<3> distance_to;
@@ -132,6 +149,10 @@ struct Ellipse {
   T eval(T x, T y) const {
     return distance_to.eval<T>({x - T(center[0]), y - T(center[1])});
   }
+  std::array<Interval, 2> partials(const std::array<Interval, 2>& in) const {
+    return distance_to.partials({in[0] - center[0], in[1] - center[1]});
+  }
+  std::array<double, 2> top() const { return center; }
 
  private:
   EllipsoidDistance<2> distance_to;

@@ -156,7 +156,7 @@ TEST(PovraySamples, NeedOneLayerOnlyWhereAnInputDoesNotVary) {
     const povray::SampleGrid& grid = text.sampled[0]->samples().grid();
     EXPECT_EQ(grid.counts[2], 1);
     EXPECT_GT(grid.counts[0], 30);
-    EXPECT_LT(text.sampled[0]->samples().steepest(), 2.5);
+    EXPECT_LT(text.sampled[0]->samples().over(text.sampled[0]->samples().grid().box).length, 2.5);
   }
 }
 

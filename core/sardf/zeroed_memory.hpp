@@ -22,6 +22,14 @@ inline void use_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] size
 #endif
 }
 
+/// Makes an empty vector n elements long, in large pages.
+template <class T>
+void resize_large(std::vector<T>& empty, size_t n) {
+  empty.reserve(n);
+  use_large_pages(empty.data(), n * sizeof(T));
+  empty.resize(n);
+}
+
 /// An allocator for std::vector: elements that are made without a value are 0, since they lie in
 /// memory that the system hands out as zeros. Pages come into being where they are first touched,
 /// by the threads that work there. Not for vectors that shrink and grow again within their

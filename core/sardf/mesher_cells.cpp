@@ -103,14 +103,27 @@ class Signs {
   /// A side of the block has a crossed edge where its samples have both signs, and so has an edge
   /// of the block.
   Neighbours neighbours() const {
+    // Of the rows with y and z first, anywhere, and last: all of them together.
+    std::array<std::array<Both, 3>, 3> of;
+    for (int z = 0; z < side; ++z) {
+      Both inner;
+      for (int y = 0; y < side; ++y) inner.add(row(y, z));
+      const std::array<Both, 3> rows{Both(row(0, z)), inner, Both(row(side - 1, z))};
+      for (size_t y = 0; y < 3; ++y) {
+        if (z == 0) of[0][y] = rows[y];
+        of[1][y].add(rows[y]);
+        if (z == side - 1) of[2][y] = rows[y];
+      }
+    }
+    constexpr int mask[] = {1, (1 << side) - 1, 1 << (side - 1)};
     Neighbours result = 0;
-    for (int x = 0; x < 3; ++x) {
-      for (int y = 0; y < 3; ++y) {
-        for (int z = 0; z < 3; ++z) {
-          const int outer = (x != 1) + (y != 1) + (z != 1);
-          if (outer < 1 || outer > 2 || !has_both(x, y, z)) continue;
-          result |= Neighbours(1) << (x + 3 * y + 9 * z);
-        }
+    for (int k = 0; k < 27; ++k) {
+      const int x = k % 3, y = k / 3 % 3, z = k / 9;
+      const int outer = (x != 1) + (y != 1) + (z != 1);
+      if (outer < 1 || outer > 2) continue;
+      const Both& both = of[size_t(z)][size_t(y)];
+      if ((both.any & mask[x]) != 0 && (both.all & mask[x]) != mask[x]) {
+        result |= Neighbours(1) << k;
       }
     }
     return result;
@@ -119,19 +132,20 @@ class Signs {
  private:
   int row(int y, int z) const { return rows_[y + side * z]; }
 
-  // Whether the samples that are shared with that neighbour have both signs.
-  bool has_both(int x, int y, int z) const {
-    constexpr int first[] = {0, 0, side - 1}, last[] = {0, side - 1, side - 1};
-    const int mask = x == 0 ? 1 : x == 1 ? (1 << side) - 1 : 1 << (side - 1);
-    int any = 0, all = mask;
-    for (int k = first[z]; k <= last[z]; ++k) {
-      for (int j = first[y]; j <= last[y]; ++j) {
-        any |= row(j, k);
-        all &= row(j, k);
-      }
+  // Bit x: any sample there is inside, and all are.
+  struct Both {
+    int any = 0, all = -1;
+    Both() = default;
+    explicit Both(int row) : any(row), all(row) {}
+    void add(int row) {
+      any |= row;
+      all &= row;
     }
-    return (any & mask) != 0 && all != mask;
-  }
+    void add(const Both& other) {
+      any |= other.any;
+      all &= other.all;
+    }
+  };
 
   std::array<uint16_t, side * side> rows_{};
 };

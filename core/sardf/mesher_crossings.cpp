@@ -8,13 +8,14 @@ namespace sardf::mesher {
 
 namespace {
 
-// The part of a grid edge that holds the crossing, in [0, 1] from its start.
+// The part of a grid edge that holds the crossing, in [0, 1] from its start. Without initial
+// values: only the few that are needed of an array of them are set.
 struct Bracket {
-  double lo = 0, hi = 1;
+  double lo, hi;
   double at_lo, at_hi;  // values there, scaled by the Illinois rule
   double rise;          // between the ends
-  double tangent = -1;  // where the tangent at the last point tried vanishes
-  int kept = 0;         // which end stayed last: -1 or 1
+  double tangent;       // where the tangent at the last point tried vanishes
+  int kept;             // which end stayed last: -1 or 1; 0 at first
 };
 
 constexpr int most_steps = 60;
@@ -24,9 +25,12 @@ constexpr int most_steps = 60;
 constexpr double near_zero = 1e-4, zero = 1e-6;
 constexpr double narrowest = 1e-7;
 
-Bracket start_of(const Edge& edge) {
+void start(Bracket& b, const Edge& edge) {
   constexpr double largest = 1e30;  // an end may be infinite
-  Bracket b;
+  b.lo = 0;
+  b.hi = 1;
+  b.tangent = -1;
+  b.kept = 0;
   b.at_lo = std::clamp(double(edge.start), -largest, largest);
   b.at_hi = std::clamp(double(edge.end), -largest, largest);
   if (std::isnan(b.at_lo)) b.at_lo = -std::abs(b.at_hi);
@@ -35,7 +39,6 @@ Bracket start_of(const Edge& edge) {
   // An end on the surface is the crossing.
   if (std::abs(b.at_lo) <= zero * b.rise) b.hi = 0;
   if (std::abs(b.at_hi) <= zero * b.rise) b.lo = b.hi;
-  return b;
 }
 
 // The next point: where the last one's tangent or the chord vanishes, every third step the middle
@@ -114,7 +117,7 @@ class Edges {
       const double rise = std::abs(double(edges_[i].start) - double(edges_[i].end));
       crossings_[i].at = float(std::clamp(tried.at + tried.step, 0.0, 1.0));
       if (rise < infinity && is_near(tried, rise)) continue;
-      brackets[i] = start_of(edges_[i]);
+      start(brackets[i], edges_[i]);
       if (brackets[i].lo < brackets[i].hi && take(brackets[i], tried, crossings_[i])) continue;
       open[count++] = uint16_t(i);
     }

@@ -53,7 +53,9 @@ Meeting meeting_point(std::span<const Sample> samples, int sides, const Vec3& or
     matrix += w * normal * normal.transpose();
     right += w * (dot(s.normal, s.at - origin) - s.height) * normal;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(matrix);
+  // In closed form: right to 1e-8, which the next step makes up for.
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(matrix);
   Eigen::Vector3d step = Eigen::Vector3d::Zero();
   bool is_clear = true;
   for (int i = 0; i < 3; ++i) {

@@ -233,19 +233,20 @@ class Owners {
   };
 
   void add(const Cells& cells, const Cells::Block& block, const std::array<int, 3>& beyond) {
+    // Of a block behind this one only the nearest layer of cells is needed.
     const uint64_t mask =
         (beyond[0] ? 0x0101010101010101u : ~uint64_t(0)) & (beyond[1] ? 0xFFu : ~uint64_t(0));
+    const int first = index(8 * beyond[0], 8 * beyond[1], 8 * beyond[2]);
     for (int z = 0; z < (beyond[2] ? 1 : block_cells); ++z) {
       const uint64_t all = block.occupied[size_t(z)];
-      uint32_t cell = block.first[size_t(z)];
-      for (uint64_t left = all; left != 0; left &= left - 1, ++cell) {
+      for (uint64_t left = all & mask; left != 0; left &= left - 1) {
         const int bit = std::countr_zero(left);
-        if (!(mask >> bit & 1)) continue;
+        const uint64_t before = (uint64_t(1) << bit) - 1;
+        const uint32_t cell = block.first[size_t(z)] + uint32_t(std::popcount(all & before));
         const int crossed = crossed_edges[cells.inside[cell]];
         const uint32_t x = crossed & 1, y = crossed >> 4 & 1;
-        const int at =
-            index((bit & 7) + 8 * beyond[0], (bit >> 3) + 8 * beyond[1], z + 8 * beyond[2]);
-        owners_[size_t(at)] = {cells.first_crossing[cell], x << 2 | (x + y) << 4};
+        owners_[size_t(first + index(bit & 7, bit >> 3, z))] = {cells.first_crossing[cell],
+                                                                x << 2 | (x + y) << 4};
       }
     }
   }

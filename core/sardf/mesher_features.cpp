@@ -199,14 +199,14 @@ void place_features(const Field& field, const Grid& grid, const Net& net, const 
     });
   };
   place(vertices.sharp, slack_in_cells * grid.cell);
-  auto numbers = vertices_to_take_back(grid, net, places, vertices);
+  auto numbers = vertices_to_take_back(grid, net, places, vertices, work);
   if (make_room(field, grid, net, places, numbers, vertices)) {
-    numbers = vertices_to_take_back(grid, net, places, vertices);
+    numbers = vertices_to_take_back(grid, net, places, vertices, work);
   }
   // Those that were taken back stay in their room, so this ends.
   while (!numbers.empty()) {
     place(numbers, 0);
-    numbers = vertices_to_take_back(grid, net, places, vertices);
+    numbers = vertices_to_take_back(grid, net, places, vertices, work);
   }
 }
 

@@ -4,6 +4,7 @@
 // it would have one piece that meets the face twice, the mesh would get an edge with four faces;
 // resolving the face the other way splits the piece in both cells and never joins any.
 #include <algorithm>
+#include <numeric>
 
 #include "sardf/mesher_stages.hpp"
 
@@ -131,18 +132,22 @@ Net build_net(Cells& cells, Work& work) {
   settle_ambiguous_faces(cells);
   Net net;
   net.first_vertex.resize(cells.at.size());
-  uint32_t count = 0;
-  for (size_t i = 0; i < cells.at.size(); ++i) {
-    net.first_vertex[i] = count;
-    count += uint32_t(pieces_of(cells.inside[i], cells.joined[i]).count);
-  }
-  net.cell.resize(count);
-  net.sides.resize(count);
-  work.run(cells.at.size(), 4096, [&](size_t first, size_t last) {
+  constexpr size_t grain = 4096;
+  std::vector<uint32_t> begin(cells.at.size() / grain + 2);  // vertices before each part
+  work.run(cells.at.size(), grain, [&](size_t first, size_t last) {
+    uint32_t& count = begin[first / grain + 1];
+    for (size_t i = first; i < last; ++i)
+      count += uint32_t(pieces_of(cells.inside[i], cells.joined[i]).count);
+  });
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  net.cell.resize(begin.back());
+  net.sides.resize(begin.back());
+  work.run(cells.at.size(), grain, [&](size_t first, size_t last) {
+    uint32_t v = begin[first / grain];
     for (size_t i = first; i < last; ++i) {
       const Pieces pieces = pieces_of(cells.inside[i], cells.joined[i]);
-      for (int piece = 0; piece < pieces.count; ++piece) {
-        const size_t v = net.first_vertex[i] + size_t(piece);
+      net.first_vertex[i] = v;
+      for (int piece = 0; piece < pieces.count; ++piece, ++v) {
         net.cell[v] = uint32_t(i);
         net.sides[v] = pieces.sides[size_t(piece)];
       }

@@ -76,11 +76,12 @@ void find_sharp_normals(const Field& field, const Grid& grid, const Places& plac
   });
 }
 
-std::vector<uint32_t> faces_at(const std::vector<uint32_t>& vertices, const Places& places) {
-  std::vector<uint32_t> faces;
-  for (const uint32_t v : vertices) {
-    for (const uint32_t use : places.uses(v)) faces.push_back(use / 4);
-  }
+std::vector<uint32_t> faces_at(const std::vector<uint32_t>& vertices, const Places& places,
+                               Work& work) {
+  auto faces =
+      collected<uint32_t>(vertices.size(), 256, work, [&](size_t i, std::vector<uint32_t>& to) {
+        for (const uint32_t use : places.uses(vertices[i])) to.push_back(use / 4);
+      });
   std::sort(faces.begin(), faces.end());
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
   return faces;
@@ -107,8 +108,8 @@ void finish_faces(const Field& field, const Grid& grid, const Places& places,
     finish_smooth_faces(grid, vertices, mesh, first, last);
   });
   find_sharp_normals(field, grid, places, vertices, mesh, work);
-  const std::vector<uint32_t> faces = faces_at(vertices.sharp, places);
-  mesh.creases = find_creases(mesh, vertices, faces);
+  const std::vector<uint32_t> faces = faces_at(vertices.sharp, places, work);
+  mesh.creases = find_creases(mesh, vertices, faces, work);
   work.run(faces.size(), 1024, [&](size_t first, size_t last) {
     for (size_t i = first; i < last; ++i) {
       fill_normals(mesh, faces[i]);

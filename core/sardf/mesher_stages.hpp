@@ -172,6 +172,18 @@ void resize_on_all_threads(std::vector<T>& empty, size_t n) {
   empty.resize(n);
 }
 
+/// What body(i, to) appends to vectors for each i below n, in the order of i.
+template <class T, class Body>
+std::vector<T> collected(size_t n, size_t grain, Work& work, const Body& body) {
+  std::vector<std::vector<T>> parts((n + grain - 1) / grain);
+  work.run(n, grain, [&](size_t first, size_t last) {
+    for (size_t i = first; i < last; ++i) body(i, parts[first / grain]);
+  });
+  std::vector<T> all;
+  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
 /// Whether the face on side s along the axis has two inside corners across from each other.
 constexpr bool is_ambiguous(uint8_t inside, int axis, int s) {
   const int e = 1 << (axis + 1) % 3, g = 1 << (axis + 2) % 3, c = s << axis;
@@ -275,7 +287,7 @@ void place_features(const Field& field, const Grid& grid, const Net& net, const 
 /// Of each face that turned over or shrank to nothing, because sharp vertices lie outside of their
 /// room, the vertex that lies farthest outside.
 std::vector<uint32_t> vertices_to_take_back(const Grid& grid, const Net& net, const Places& places,
-                                            const Vertices& vertices);
+                                            const Vertices& vertices, Work& work);
 /// Moves the smooth neighbours of these vertices, which left their rooms, away where that unfolds
 /// their faces; whether any were moved.
 bool make_room(const Field& field, const Grid& grid, const Net& net, const Places& places,
@@ -288,7 +300,8 @@ void finish_faces(const Field& field, const Grid& grid, const Places& places,
                   const Vertices& vertices, Mesh& mesh, Work& work);
 /// `sharp_faces`: those at sharp vertices.
 std::vector<std::array<uint32_t, 2>> find_creases(const Mesh& mesh, const Vertices& vertices,
-                                                  const std::vector<uint32_t>& sharp_faces);
+                                                  const std::vector<uint32_t>& sharp_faces,
+                                                  Work& work);
 /// Sets the corner normals of faces at smooth vertices and chooses the diagonals of those that have
 /// only such ones, from the face `first` to `last`.
 void finish_smooth_faces(const Grid& grid, const Vertices& vertices, Mesh& mesh, size_t first,

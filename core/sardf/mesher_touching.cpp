@@ -46,17 +46,11 @@ class Filter {
 
 // The vertices at places in the filter.
 std::vector<uint32_t> vertices_at(const Filter& filter, const Vertices& vertices, Work& work) {
-  constexpr size_t grain = 16384;
-  const size_t count = vertices.at.size();
-  std::vector<std::vector<uint32_t>> found((count + grain - 1) / grain);
-  work.run(count, grain, [&](size_t first, size_t last) {
-    for (size_t v = first; v < last; ++v) {
-      if (filter.may_contain(rounded(vertices.at[v]))) found[first / grain].push_back(uint32_t(v));
-    }
-  });
-  std::vector<uint32_t> all;
-  for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
-  return all;
+  return collected<uint32_t>(vertices.at.size(), 16384, work,
+                             [&](size_t v, std::vector<uint32_t>& to) {
+                               if (filter.may_contain(rounded(vertices.at[v])))
+                                 to.push_back(uint32_t(v));
+                             });
 }
 
 // Those at the same place as one of `outer`, more than one there, appended; all ascending.

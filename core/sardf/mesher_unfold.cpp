@@ -165,23 +165,24 @@ bool make_room(const Field& field, const Grid& grid, const Net& net, const Place
 }
 
 std::vector<uint32_t> vertices_to_take_back(const Grid& grid, const Net& net, const Places& places,
-                                            const Vertices& vertices) {
+                                            const Vertices& vertices, Work& work) {
   const Faces faces(grid, net, places, vertices);
   const auto outside = [&](uint32_t v) {
     return norm(vertices.at[v] - clamped(vertices.at[v], places.room(v)));
   };
-  std::vector<uint32_t> result;
-  for (const uint32_t v : vertices.sharp) {
-    if (outside(v) == 0) continue;
+  const auto add_farthest = [&](size_t i, std::vector<uint32_t>& to) {
+    const uint32_t v = vertices.sharp[i];
+    if (outside(v) == 0) return;
     for (const uint32_t use : places.uses(v)) {
       const uint32_t face = use / 4;
       if (faces.is_good(face)) continue;
       const auto& corners = net.faces[face];
-      result.push_back(
-          *std::max_element(corners.begin(), corners.end(),
-                            [&](uint32_t a, uint32_t b) { return outside(a) < outside(b); }));
+      to.push_back(*std::max_element(corners.begin(), corners.end(), [&](uint32_t a, uint32_t b) {
+        return outside(a) < outside(b);
+      }));
     }
-  }
+  };
+  auto result = collected<uint32_t>(vertices.sharp.size(), 256, work, add_farthest);
   std::sort(result.begin(), result.end());
   result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;

@@ -116,9 +116,11 @@ class RoomMaker {
                  : std::min(at, 0.5 * (vertex + cell.lo[axis]));
   }
 
-  // Moves a smooth vertex to the surface near a point, if the normal hardly changes on the way.
+  // Moves a smooth vertex to the surface near a point, if the normal there is that of its
+  // crossings. Its own one may be that of an edge's other side.
   void move(uint32_t w, Vec3 to) {
     constexpr double near = 1e-6, like = 0.9;
+    const Vec3 wanted = places_.normal(*places_.uses(w).begin() / 4);
     const BoundingBox room = places_.room(w);
     Points<double> points;
     for (int step = 0; step < 4; ++step) {
@@ -126,11 +128,10 @@ class RoomMaker {
       field_.differentiate(points, 1);
       const Vec3 normal = outward_normal(points.gradient_at(0));
       const Vec3 by = newton_step(points.value[0], points.gradient_at(0));
-      const auto& old = vertices_.normal[w];
-      if (dot(normal, {old[0], old[1], old[2]}) < like) return;
+      if (dot(normal, wanted) < like) return;
       if (norm(by) <= near * grid_.cell) {
         if (norm(to - vertices_.at[w]) <= near * grid_.cell) return;
-        before_.push_back({w, vertices_.at[w], old});
+        before_.push_back({w, vertices_.at[w], vertices_.normal[w]});
         vertices_.at[w] = to;
         for (size_t axis = 0; axis < 3; ++axis) vertices_.normal[w][axis] = float(normal[axis]);
         return;

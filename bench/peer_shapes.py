@@ -44,7 +44,6 @@ class Grid:
             (self.cell * np.arange(n) - h).astype(np.float32)
             for n, h in zip(steps, self.half, strict=True)
         ]
-        self.scene = sardf.Scene(solid=self.field, bounds=(tuple(-self.half), tuple(self.half)))
 
     @property
     def shape(self):
@@ -52,8 +51,9 @@ class Grid:
         return tuple(len(axis) for axis in reversed(self.axes))
 
     def mesh(self):
-        """sardf's mesh, without a texture."""
-        return self.scene.mesh(cell_size=self.cell, size=0)
+        """sardf's mesh, without a texture; making the scene shrinks the box to the solid."""
+        scene = sardf.Scene(solid=self.field, bounds=(tuple(-self.half), tuple(self.half)))
+        return scene.mesh(cell_size=self.cell, size=0)
 
     def values(self, clock):
         """The field at all points, z slowest, and the time of it by the clock, in slabs: their

@@ -98,7 +98,7 @@ class Solver {
       low = f < none ? t_ : low;
       high = f < none ? high : t_;
       Values next = halve ? low - one : t_ - f / rise;
-      next = (rise > none) & (next >= low) & (next <= high) ? next : 0.5 * (low + high);
+      next = ((rise > none) & (next >= low) & (next <= high)) ? next : 0.5 * (low + high);
       const Values moved = next - t_;
       rise_ = going ? rise : rise_;
       t_ = going ? next : t_;
@@ -117,7 +117,7 @@ class Solver {
       tangent[k] = by_1 + t_ * (2 * by_2 + t_ * (3 * by_3));
       product = product + a_[k] * tangent[k];
     }
-    Values next = inside_ & (rise_ > Values{}) ? t_ - product / rise_ : t_;
+    Values next = (inside_ & (rise_ > Values{})) ? t_ - product / rise_ : t_;
     next = next < Values{} ? Values{} : next;
     next = next > all(1) ? all(1) : next;
     for (size_t k = 0; k < 3; ++k) a_[k] = a_[k] + (next - t_) * tangent[k];

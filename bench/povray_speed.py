@@ -1,14 +1,16 @@
 """How fast POV-Ray draws our text, against a plain translation and POV-Ray's `evaluate`.
 
-    python bench/povray_speed.py --size 160x120 [scenes/tooth.json ...]
+    python bench/povray_speed.py --size 320x240 [scenes/tooth.json ...]
 
 The plain translation is one isosurface of the solid's function in its certified box, with the
 smallest max_gradient, found by trial, that gives the picture; `evaluate` finds its own as it
-goes. Our text has the pieces and bounds that it is written with. All are drawn flat and white, by
-one thread, and what counts is processor time, calls of functions, and how far the mask agrees with
-one that is drawn with twice our max_gradient. The last columns are the largest max_gradient of our
-pieces, without its margin, and the steepest gradient that samples find near the surface. Needs
-POV-Ray 3.7 and the package sardf.
+goes. Our text has the pieces, fields and bounds that it is written with. All are drawn flat and
+white, by one thread, and what counts is processor time, calls of functions, and how far the mask
+agrees with that of the plain translation with twice our max_gradient. Of the time, "start" is what
+passes before the first ray: reading the text and density files, and sorting boxes; it is part of
+all times. The last columns are the largest max_gradient of our pieces, without its margin, and the
+steepest gradient near the surface: what samples find of the scene's field, or, where the solid is
+read from a density file, the most that its cells have. Needs POV-Ray 3.7 and the package sardf.
 """
 
 import argparse
@@ -50,18 +52,40 @@ class Drawing:
         done = subprocess.run(
             [*arguments, "-A"], cwd=self.folder, check=True, capture_output=True, text=True
         )
-        seconds = sum(map(float, re.findall(r"([\d.]+) CPU-seconds", done.stderr)))
+        # Of parsing, of sorting boxes, of tracing.
+        times = list(map(float, re.findall(r"([\d.]+) CPU-seconds", done.stderr)))
+        self.start, seconds = sum(times[:2]), sum(times)
         calls = int(re.search(r"Function VM calls: *(\d+)", done.stderr)[1])
         return _image.read(str(self.folder / "a.exr"))[..., 3] >= 0.5, seconds, calls
 
-    def doubled(self):
-        return GRADIENT.sub(lambda m: f"max_gradient {2 * float(m[1])}", self.include)
-
     def plain(self, max_gradient, more=""):
-        """All of the solid in one container."""
+        """All of the solid in one container, by its own function."""
         text = re.sub(r"#if \(\w+_csg\)\n  isosurface", "#if (yes)\n  isosurface", self.include)
-        text = re.sub(r"function \{ min\(\S+, max\(\S+, (.*?)\)\) \}", r"function { \1 }", text)
+        prefix = re.search(r"#declare (\w+)_csg", text)[1]
+        solid = f"isosurface {{\n    function {{ -({prefix}_solid(x, y, z)) }}"
+        text = re.sub(r"isosurface \{\n    function \{ .* \}", solid, text, count=1)
         return GRADIENT.sub(f"max_gradient {max_gradient} {more}", text)
+
+    def bounds(self):
+        """Of the pieces, without the margin; the first isosurface of several is the whole."""
+        bounds = [float(g) / MARGIN for g in GRADIENT.findall(self.include)]
+        return bounds[1:] or bounds
+
+    def density(self):
+        """The values and the steps of the samples that the solid is read from; else nothing."""
+        text = re.sub(r"\s+", " ", self.include)
+        for name in re.findall(r"(\w+)\(x, y, z\)", re.search(r"isosurface \{.*?\}", text)[0]):
+            function = re.search(rf"#declare {name} = function\(x, y, z\) \{{(.*?)\}}", text)
+            if not function or f"{name}_samples(" not in function[1]:
+                continue
+            file = re.search(rf'#declare {name}_samples = .*? df3 "(.*?)"', text)[1]
+            data = (self.folder / file).read_bytes()
+            stored = np.frombuffer(data[:6], ">u2").astype(int)
+            codes = np.frombuffer(data[6:], ">u4").reshape(stored[::-1])[:-1, :-1, :-1]
+            low, factor = re.search(rf"(\S+) \+ (\S+) \* {name}_samples\(", function[1]).groups()
+            scales = np.array(re.findall(r"\) \* ([\d.e+-]+), 0\)", function[1]), float)
+            return float(low) + float(factor) / (2**32 - 1) * codes, 1 / (scales * stored)
+        return None
 
 
 def agreement(one, other):
@@ -82,32 +106,51 @@ def smallest_gradient(drawing, reference):
     return 2 ** (k / 4)
 
 
-def bounds_and_truth(drawing, field):
-    """How many pieces, their largest bound, and the steepest gradient near the surface."""
-    boxes = [[np.fromstring(end, sep=",") for end in box] for box in BOX.findall(drawing.include)]
-    bounds = [float(g) / MARGIN for g in GRADIENT.findall(drawing.include)]
-    # The first is the whole, for constructive geometry, where there are pieces.
-    lo, hi = boxes[0]
+def steepest_cell(values, steps):
+    """The longest gradient of trilinear cells at the surface: one at a corner of a cell."""
+    cells = [n - 1 for n in values.shape]
+    squares = np.zeros(cells)
+    low, high = np.full(cells, np.inf), np.full(cells, -np.inf)
+    for corner in np.ndindex(2, 2, 2):
+        at = [slice(c, c + n) for c, n in zip(corner, cells, strict=True)]
+        low = np.minimum(low, values[tuple(at)])
+        high = np.maximum(high, values[tuple(at)])
+        rises = 0
+        for axis in range(3):
+            beside = at[:axis] + [slice(None)] + at[axis + 1 :]
+            rises = rises + (np.diff(values, axis=axis)[tuple(beside)] / steps[2 - axis]) ** 2
+        squares = np.maximum(squares, rises)
+    return np.sqrt(squares[(low <= 0) & (high >= 0)].max())
+
+
+def steepest(drawing, field):
+    """The longest gradient near the surface that is found."""
+    density = drawing.density()
+    if density:
+        return steepest_cell(*density)
+    lo, hi = [np.fromstring(end, sep=",") for end in BOX.search(drawing.include).groups()]
     points = lo + (hi - lo) * np.random.default_rng(1).random((200_000, 3))
     near = np.abs(field(points)) < 0.02 * np.linalg.norm(hi - lo)
-    steepest = np.nanmax(np.linalg.norm(field.gradient(points[near]), axis=1))
-    return len(bounds[1:] or bounds), max(bounds[1:] or bounds), steepest
+    return np.nanmax(np.linalg.norm(field.gradient(points[near]), axis=1))
 
 
 def row(scene, width, height):
     with tempfile.TemporaryDirectory() as folder:
         drawing = Drawing(scene, Path(folder), width, height)
-        reference = drawing.draw(drawing.doubled())[0]
+        reference = drawing.draw(drawing.plain(2 * MARGIN * max(drawing.bounds())))[0]
         mask, seconds, calls = drawing.draw(drawing.include)
+        start = drawing.start
         gradient = smallest_gradient(drawing, reference)
         plain_seconds, plain_calls = drawing.draw(drawing.plain(gradient))[1:]
         other = drawing.draw(drawing.plain(gradient, "evaluate 1, 1.2, 0.99"))
-        pieces, bound, steepest = bounds_and_truth(drawing, sardf.load(str(scene)).drawn)
+        truth = steepest(drawing, sardf.load(str(scene)).drawn)
+    bounds = drawing.bounds()
     return (
-        f"| {scene.stem} | {pieces} | {calls} | {seconds:.2f} | {agreement(mask, reference):.4f} "
+        f"| {scene.stem} | {len(bounds)} | {calls} | {start:.2f} | {seconds:.2f} "
+        f"| {agreement(mask, reference):.4f} "
         f"| {gradient:.2f} | {plain_calls} | {plain_seconds:.2f} | {other[2]} | {other[1]:.2f} "
-        f"| {agreement(other[0], reference):.4f} "
-        f"| {seconds / plain_seconds:.2f} | {bound:.3f} | {steepest:.3f} |"
+        f"| {agreement(other[0], reference):.4f} | {calls / plain_calls:.2f} "
+        f"| {seconds / plain_seconds:.2f} | {max(bounds):.3f} | {truth:.3f} |"
     )
 
 
@@ -118,10 +161,10 @@ def main():
     arguments = parser.parse_args()
     width, height = arguments.size.split("x")
     print(
-        "| scene | pieces | calls | seconds | IoU | plain: max_gradient | calls | seconds "
-        "| evaluate: calls | seconds | IoU | time / plain | bound | steepest |"
+        "| scene | pieces | calls | start | seconds | IoU | plain: max_gradient | calls | seconds "
+        "| evaluate: calls | seconds | IoU | calls / plain | time / plain | bound | steepest |"
     )
-    print("|" + " --- |" * 14)
+    print("|" + " --- |" * 16)
     for scene in arguments.scenes:
         print(row(Path(scene).resolve(), width, height), flush=True)
 

@@ -3,7 +3,6 @@
 #include <unordered_map>
 
 #include "povray_gen/scene_text.hpp"
-#include "povray_gen/sharp_edges.hpp"
 #include "povray_gen/vector_text.hpp"
 #include "sardf/error.hpp"
 #include "sardf/smooth_formula.hpp"
@@ -65,7 +64,7 @@ std::vector<Piece> isosurface_pieces(const PovrayScene& scene, const GradientBou
   // What the formula is worth further from the surface shows nowhere.
   options.exact_within = 2 * options.reach * whole.value;
   options.progress = progress;
-  return pieces_of(with_sharp_edges(scene.solid), scene.bounds, options);
+  return pieces_of(scene.solid, scene.bounds, options);
 }
 
 std::vector<std::string> texts_of_pieces(const std::vector<Piece>& pieces, FunctionWriter& writer) {
@@ -81,22 +80,23 @@ std::vector<std::string> texts_of_pieces(const std::vector<Piece>& pieces, Funct
 
 std::string isosurface_macro(const PovrayScene& scene, const std::string& name,
                              const std::string& csg, const std::string& solid,
-                             const GradientBound& whole, const std::vector<Piece>& pieces,
+                             const GradientBound& whole, const GradientBound& drawn,
+                             const std::vector<Piece>& pieces,
                              const std::vector<std::string>& texts) {
   const double accuracy = isosurface_accuracy * scene.bounds.diagonal();
   // A macro, because copies of a declared isosurface do not report a max_gradient that is too
   // small.
   std::string out = "#macro " + name + "()\n";
-  const auto closed = [&](const std::string& text, const Piece& piece) {
-    return one_isosurface(negative(text, piece.band), piece.box, smaller(piece, whole), accuracy,
+  const auto closed = [&](const std::string& text, const Piece& piece, const GradientBound& bound) {
+    return one_isosurface(negative(text, piece.band), piece.box, smaller(piece, bound), accuracy,
                           "#if (" + csg + ") all_intersections #end");
   };
-  if (pieces.size() == 1) return out + closed(texts[0], pieces[0]) + "#end\n";
-  out += "#if (" + csg + ")\n" + closed(solid + "(x, y, z)", {scene.bounds, scene.solid}) +
+  if (pieces.size() == 1) return out + closed(texts[0], pieces[0], drawn) + "#end\n";
+  out += "#if (" + csg + ")\n" + closed(solid + "(x, y, z)", {scene.bounds, scene.solid}, whole) +
          "#else\n  // The surface passes through these boxes only.\n" + "  union {\n";
   for (size_t i = 0; i < pieces.size(); ++i) {
     out += one_isosurface(negative(texts[i], pieces[i].band), pieces[i].box,
-                          smaller(pieces[i], whole), accuracy, "open");
+                          smaller(pieces[i], drawn), accuracy, "open");
   }
   return out + "  }\n#end\n#end\n";
 }

@@ -27,7 +27,8 @@ struct GradientBound {
 /// the operation at fault where the bound is infinite and none is stated.
 GradientBound gradient_of(const PovrayScene& scene, bool exact);
 
-/// The pieces that POV-Ray traces fastest (pieces.hpp). Cancelled.
+/// The pieces that POV-Ray traces fastest (pieces.hpp); `whole`: the bound of the solid's gradient.
+/// Cancelled.
 std::vector<Piece> isosurface_pieces(const PovrayScene& scene, const GradientBound& whole,
                                      const Progress& progress);
 
@@ -36,10 +37,12 @@ GradientBound smaller(const Piece& piece, const GradientBound& whole);
 
 /// Declares a macro `name` without parameters that gives the solid: one isosurface if the
 /// identifier `csg` is true there, else a union of the pieces. `solid`: the function of the whole;
-/// `whole`: the bound of its gradient; `texts`: the fields of the pieces.
+/// `whole`: the bound of its gradient; `drawn`: that of the field that the pieces are of; `texts`:
+/// the fields of the pieces.
 std::string isosurface_macro(const PovrayScene& scene, const std::string& name,
                              const std::string& csg, const std::string& solid,
-                             const GradientBound& whole, const std::vector<Piece>& pieces,
+                             const GradientBound& whole, const GradientBound& drawn,
+                             const std::vector<Piece>& pieces,
                              const std::vector<std::string>& texts);
 
 /// The fields of the pieces as text in x, y and z; what helper functions they need is declared.

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <optional>
-#include <unordered_map>
+#include <string>
 #include <utility>
 
 #include "povray_gen/expression_of.hpp"
@@ -82,7 +83,8 @@ class Splitter {
   double steps_of(const Evaluator& field) {
     double steps = 1;
     for (const Instruction& i : field.tape().instructions()) {
-      const auto [known, added] = steps_.try_emplace(i.operation, 20);
+      const auto [known, added] =
+          steps_.try_emplace({i.operation->info().name, i.operation->numbers()}, 20);
       if (added && i.operation->has_formula()) {
         Trace trace(i.operation->info().arity);
         i.operation->record(trace);
@@ -223,7 +225,8 @@ class Splitter {
   Demand demand_;
   Index count_{};
   Region whole_;
-  std::unordered_map<const Operation*, double> steps_;
+  // Not by address: operations that are made for a part do not live as long as this.
+  std::map<std::pair<std::string, std::vector<double>>, double> steps_;
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "povray_gen/isosurface_text.hpp"
 #include "povray_gen/scene_samples.hpp"
+#include "povray_gen/sharp_edges.hpp"
 #include "povray_gen/vector_text.hpp"
 #include "sardf/error.hpp"
 #include "sardf/pulse.hpp"
@@ -131,7 +132,8 @@ std::string normal_pigment(const std::string& name, const std::string& function,
 }
 
 std::string include_text(const SceneSamples& samples, Names& names, const Identifiers& ids,
-                         const GradientBound& gradient, const std::vector<Piece>& pieces) {
+                         const GradientBound& whole, const GradientBound& drawn,
+                         const std::vector<Piece>& pieces) {
   FunctionWriter writer(names);
   const PovrayScene& scene = samples.scene;
   std::vector<NamedExpression> all(scene.fields);
@@ -158,8 +160,8 @@ std::string include_text(const SceneSamples& samples, Names& names, const Identi
        comment_lines(one_line(samples.left_out_sentence())), ids.csg, ids.guard, ids.guard, ids.csg,
        ids.csg});
   out += writer.text() + "\n" +
-         isosurface_macro(scene, ids.isosurface, ids.csg, solid, gradient, pieces, near) + pigment +
-         normal_pigment(ids.normal_pigment, solid, step, names);
+         isosurface_macro(scene, ids.isosurface, ids.csg, solid, whole, drawn, pieces, near) +
+         pigment + normal_pigment(ids.normal_pigment, solid, step, names);
   out += filled(
       "#declare {} = texture {\n  pigment { {} }\n"
       "  finish { ambient 0.1 diffuse 0.8 specular 0.15 roughness 0.03 }\n}\n"
@@ -214,16 +216,20 @@ SceneText scene_text(const PovrayScene& exact_scene, const std::string& include_
   out.sampled = samples.functions;
   out.errors = samples.errors;
   out.sentences = samples.sentences();
-  const GradientBound gradient = gradient_of(scene, scene.solid == exact_scene.solid);
+  const bool exact = scene.solid == exact_scene.solid;
+  const GradientBound whole = gradient_of(scene, exact);
+  PovrayScene sharp = scene;
+  sharp.solid = with_sharp_edges(scene.solid);
+  const GradientBound drawn = gradient_of(sharp, exact);
   const std::vector<Piece> pieces =
-      isosurface_pieces(scene, gradient, part_of(sampling.progress, share_of_samples, 1));
-  const GradientBound drawn = pieces.size() == 1 ? smaller(pieces[0], gradient) : gradient;
+      isosurface_pieces(sharp, drawn, part_of(sampling.progress, share_of_samples, 1));
+  const GradientBound largest = pieces.size() == 1 ? smaller(pieces[0], drawn) : whole;
   Names names(scene.title);
   const Identifiers ids(names);
   out.prefix = names.prefix();
-  out.max_gradient = gradient_margin * drawn.value;
-  out.proven = drawn.proven;
-  out.include = include_text(samples, names, ids, gradient, pieces);
+  out.max_gradient = gradient_margin * largest.value;
+  out.proven = largest.proven;
+  out.include = include_text(samples, names, ids, whole, drawn, pieces);
   out.scene =
       filled("// {}\n#version 3.7;\nglobal_settings { assumed_gamma 1.0 }\n#include \"{}\"\n\n",
              {one_line(scene.title), include_name});

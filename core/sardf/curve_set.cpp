@@ -12,7 +12,7 @@ constexpr int most_halvings = 6;
 constexpr size_t pieces_in_leaf = 1;
 // Pieces turn by less than a right angle. CubicSearch proves more about straighter ones: of 0.9,
 // 0.95, 0.97 and 0.98 this was the fastest for an S of six spans.
-constexpr double least_cosine = 0.9, least_cosine_of_cubics = 0.97;
+constexpr double straight_cosine = 0.9, straight_cosine_of_cubics = 0.97;
 
 std::vector<double> numbers_of(const CurveData& data) {
   std::vector<double> all;
@@ -100,7 +100,7 @@ CurveSet::CurveSet(std::string name, std::string doc, const CurveData& data)
 }
 
 void CurveSet::add_pieces(std::vector<Weighted> piece, int depth) {
-  const double straight = is_cubic() ? least_cosine_of_cubics : least_cosine;
+  const double straight = is_cubic() ? straight_cosine_of_cubics : straight_cosine;
   if (depth == most_halvings || is_nearly_straight(piece.data(), degree_, 1, straight)) {
     points_.insert(points_.end(), piece.begin(), piece.end());
     return;

@@ -67,6 +67,7 @@ def test_a_click_on_bake_makes_the_part_in_one_undo_step(window):
     assert window["objects after undo"] == ["Camera", "Light"]
 
 
+@pytest.mark.timed
 def test_escape_cancels_and_leaves_nothing_behind(window):
     assert 0 < window["interrupted at"] < 1
     assert window["thread was cancelled"]

@@ -2,12 +2,12 @@
 
 namespace sardf::povray {
 
-std::array<int, 3> SampleGrid::position(size_t index) const {
+std::array<int, 3> position_of(const std::array<int, 3>& counts, size_t index) {
   const size_t nx = size_t(counts[0]), ny = size_t(counts[1]);
   return {int(index % nx), int(index / nx % ny), int(index / nx / ny)};
 }
 
-size_t SampleGrid::index(const std::array<int, 3>& p) const {
+size_t index_of(const std::array<int, 3>& counts, const std::array<int, 3>& p) {
   return size_t(p[0]) + size_t(counts[0]) * (size_t(p[1]) + size_t(counts[1]) * size_t(p[2]));
 }
 

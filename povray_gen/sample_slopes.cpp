@@ -15,15 +15,6 @@ constexpr double most_joined = 343;
 
 int blocks(int cells, int shift) { return (cells + (1 << shift) - 1) >> shift; }
 
-size_t index(const std::array<int, 3>& counts, const std::array<int, 3>& at) {
-  return (size_t(at[2]) * size_t(counts[1]) + size_t(at[1])) * size_t(counts[0]) + size_t(at[0]);
-}
-
-std::array<int, 3> position(const std::array<int, 3>& counts, size_t i) {
-  const size_t nx = size_t(counts[0]), ny = size_t(counts[1]);
-  return {int(i % nx), int(i / nx % ny), int(i / nx / ny)};
-}
-
 }  // namespace
 
 void SampleBounds::add(const SampleBounds& other) {
@@ -68,13 +59,13 @@ SampleSlopes::SampleSlopes(const SampleGrid& grid, std::span<const uint32_t> cod
     work.run(level.blocks.size(), blocks_at_once, [&](size_t first, size_t last) {
       for (size_t i = first; i < last; ++i) {
         CellRange range;
-        const std::array<int, 3> at = position(level.counts, i);
+        const std::array<int, 3> at = position_of(level.counts, i);
         for (int k = 0; k < 3; ++k) {
           range.first[k] = at[k] << below;
           range.last[k] = std::min(parts[k], (at[k] + 1) << below) - 1;
         }
         level.blocks[i] = joined(range, 0, [&](const std::array<int, 3>& part) {
-          return finer ? finer->blocks[index(parts, part)] : of_cell(part, codes);
+          return finer ? finer->blocks[index_of(parts, part)] : of_cell(part, codes);
         });
       }
     });
@@ -142,7 +133,7 @@ SampleBounds SampleSlopes::over(const std::array<Interval, 3>& box,
     while (level + 1 < levels_.size() && count(first_shift + int(level)) > most_joined) ++level;
     const Level& chosen = levels_[level];
     out = joined(range, first_shift + int(level), [&](const std::array<int, 3>& at) {
-      return chosen.blocks[index(chosen.counts, at)];
+      return chosen.blocks[index_of(chosen.counts, at)];
     });
   }
   // Outside of the grid the function does not change along that axis.

@@ -220,7 +220,7 @@ SceneText scene_text(const PovrayScene& exact_scene, const std::string& include_
   const GradientBound whole = gradient_of(scene, exact);
   PovrayScene sharp = scene;
   sharp.solid = with_sharp_edges(scene.solid);
-  const GradientBound drawn = gradient_of(sharp, exact);
+  const GradientBound drawn = sharp.solid == scene.solid ? whole : gradient_of(sharp, exact);
   const std::vector<Piece> pieces =
       isosurface_pieces(sharp, drawn, part_of(sampling.progress, share_of_samples, 1));
   const GradientBound largest = pieces.size() == 1 ? smaller(pieces[0], drawn) : whole;

@@ -89,9 +89,8 @@ struct TexelCorners {
   std::array<std::array<float, 4>, tile_texels> weight;
 };
 
-/// work(i, count, x, y) for the runs of points of rows [first, last) whose texels (x, y), (x + 1,
-/// y),
-/// ... of the image lie side by side; i is the first one's index.
+/// work(i, count, x, y) for the runs of points of rows [first, last) whose texels (x, y),
+/// (x + 1, y), ... of the image lie side by side; i is the first one's index.
 template <class Work>
 void for_runs(const TilePoints& points, int first, int last, Work work) {
   for (int row = first; row < last; ++row) {

@@ -56,9 +56,11 @@ std::vector<Weighted> weighted_points(const std::vector<Vec3>& points,
 double scale_of(const std::vector<Vec3>& points);
 /// The extent of Bezier points.
 Extent extent_of(std::span<const Weighted> points);
+/// Pieces of curves and surfaces turn less than by this: less than a right angle.
+constexpr double straight_cosine = 0.9;
 /// Whether the steps along Bezier points turn little, to a cosine of `least_cosine` with the chord,
 /// and their weights are alike.
 bool is_nearly_straight(const Weighted* points, int degree, size_t stride,
-                        double least_cosine = 0.9);
+                        double least_cosine = straight_cosine);
 
 }  // namespace sardf

@@ -22,8 +22,9 @@ constexpr int tile_edge = 32, most_pixels = 16384, most_samples = 8;
 constexpr double default_tolerance = 1e-4;
 // Above this error, in diagonals, beams and steps in single precision stop too early to be of use.
 constexpr double most_single_error = 1e-3;
-// Colours are taken no farther from the surface, in diagonals: about a tenth of a pixel.
-constexpr double farthest_rough = 1e-4;
+// Depths in single precision are told apart by less than a tenth of this share of their range, and
+// what they count as the tolerance is less than it by that tenth.
+constexpr double least_single_tolerance = 0x1p-16, tolerance_kept = 0.9;
 // Steps of a ray in single precision and in double before intervals are tried, which cost more
 // than hundreds of steps in blocks.
 constexpr int single_steps = 512, double_steps = 512;
@@ -61,6 +62,45 @@ int slope_cells(const RenderOptions& options) {
   return pixels < 5e4 ? 4 : pixels < 1e6 ? 8 : 16;
 }
 
+// The most that places in single precision are off the rays' true ones.
+double misplacement(const Rays& rays, const BoundingBox& bounds, const RenderOptions& options) {
+  double steepest = 0;
+  for (const double x : {0, options.width}) {
+    for (const double y : {0, options.height}) {
+      steepest = std::max(steepest, norm(rays.through(x, y).along));
+    }
+  }
+  // Rays that meet the box begin no farther from it than they go on.
+  const Stretch depths = rays.depths(bounds);
+  const double way = 0.5 * bounds.diagonal() + 2 * (depths.end - depths.begin) * steepest;
+  return rounding_of_places * rounding_unit * way;
+}
+
+// What the rays in single precision need; false where that is not good enough.
+bool set_frame(Subject& subject, const RenderOptions& options) {
+  const BoundingBox& bounds = subject.bounds;
+  const double slope = subject.slopes.largest();
+  const double misplaced = misplacement(subject.rays, bounds, options);
+  const double error = subject.error_single;
+  const Stretch depths = subject.rays.depths(bounds);
+  const double range = depths.end - depths.begin;
+  if (!(error < most_single_error * bounds.diagonal()) || !(range > 0)) return false;
+  // Of a tolerance that is not many roundings nothing would be left.
+  if (!(subject.tolerance > least_single_tolerance * range)) return false;
+  RayFrame& frame = subject.frame;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    frame.middle[axis] = float(bounds.center()[axis]);
+    frame.half[axis] = float(0.5 * bounds.size()[axis]);
+  }
+  frame.begin = depths.begin;
+  frame.range = float(range * (1 + depth_slack));
+  frame.error = float(error * (1 + depth_slack));
+  frame.misplaced = float(misplaced * (1 + depth_slack));
+  frame.per_slope = float((1 - depth_slack) / slope);
+  frame.tolerance = float(subject.tolerance * tolerance_kept);
+  return true;
+}
+
 Subject make_subject(const Evaluator& solid, const BoundingBox& bounds,
                      const RenderOptions& options, Watch& watch) {
   const double diagonal = bounds.diagonal();
@@ -69,34 +109,46 @@ Subject make_subject(const Evaluator& solid, const BoundingBox& bounds,
                   Rays(options.camera, options.width, options.height),
                   LocalSlopes(solid, bounds, slope_cells(options), [&] { watch.check(); }),
                   options.tolerance.value_or(default_tolerance * diagonal),
-                  single_precision_error(solid, bounds),
-                  0};
+                  single_precision_error(solid, bounds)};
   subject.error_double = double_precision_error(bounds, std::min(subject.slopes.largest(), 1e6));
-  subject.single = subject.error_single < most_single_error * diagonal;
+  subject.single = set_frame(subject, options);
   return subject;
 }
 
-// The rays of the tile's pixels that may show something, each of them missed, or met somewhere
-// within the solid; until the thread's next tile.
-std::span<Ray> cast(const Subject& subject, const Tile& tile, const RenderOptions& options,
-                    Watch& watch) {
+// What a tile shows.
+struct TileHits {
+  RayTable table;         // rays that have met the solid
+  std::vector<Ray> rays;  // others that may meet it or have met it
+};
+
+// Rays in single precision, until the thread's next tile; all are open where that does not serve.
+TileHits& cast(const Subject& subject, const Tile& tile, const RenderOptions& options,
+               Watch& watch) {
   // Large enough that every tile would have the system map new pages for it.
-  thread_local std::vector<Ray> rays;
-  begin_rays(subject, tile, options.width, options.height, rays, watch);
-  if (subject.single) march<float>(subject, rays, single_steps, watch);
-  march<double>(subject, rays, double_steps, watch);
-  march_by_intervals(subject, rays, watch);
-  return rays;
+  thread_local TileHits hits;
+  thread_local RayTable table;
+  hits.table.count = 0;
+  hits.rays.clear();
+  const std::vector<Beam> beams = find_beams(subject, tile, watch);
+  if (subject.single) {
+    begin_rays(subject, beams, options.width, options.height, table);
+    march(subject, table, single_steps, hits.table, hits.rays, watch);
+  } else {
+    begin_rays(subject, beams, options.width, options.height, hits.rays);
+  }
+  return hits;
 }
 
-// Those that have met the solid.
-std::span<Ray* const> met(std::span<Ray> rays) {
-  thread_local std::vector<Ray*> met;
-  met.clear();
-  for (Ray& ray : rays) {
-    if (ray.state == Ray::State::met) met.push_back(&ray);
+// All that have met the solid, in double, on its surface.
+std::span<const Ray> on_surface(const Subject& subject, TileHits& hits, Watch& watch) {
+  for (size_t i = 0; i < hits.table.count; ++i) {
+    hits.rays.push_back(ray_of(subject, hits.table, i));
   }
-  return met;
+  march(subject, hits.rays, double_steps, watch);
+  march_by_intervals(subject, hits.rays, watch);
+  std::erase_if(hits.rays, [](const Ray& ray) { return ray.state == Ray::State::missed; });
+  find_roots(subject, hits.rays, watch);
+  return hits.rays;
 }
 
 // take(tile, subject) for all tiles, on as many threads as the options say.
@@ -130,15 +182,14 @@ class Painter {
       : options_(options), image_(image) {
     const std::array<Expression, 3> color = scene.base_color();
     color_ = Evaluator(std::span<const Expression>(color));
+    shows_colors_alone_ = options.look == RenderLook::flat && !options.normals && !options.depth &&
+                          single_does(scene.bounds(), color_);
   }
 
   void paint(const Subject& subject, const Tile& tile, Watch& watch) const {
-    const std::span<Ray* const> rays = met(cast(subject, tile, options_, watch));
-    if (may_be_rough(subject)) {
-      paint_roughly(subject, rays, watch);
-    } else {
-      paint_exactly(subject, rays, watch);
-    }
+    TileHits& hits = cast(subject, tile, options_, watch);
+    if (shows_colors_alone_) paint_roughly(subject, hits, watch);
+    paint_exactly(subject, hits, watch);
   }
 
   /// All that a pixel shows where there is nothing of the solid.
@@ -154,51 +205,31 @@ class Painter {
   }
 
  private:
-  bool may_be_rough(const Subject& subject) const {
-    const bool colors_alone =
-        options_.look == RenderLook::flat && !options_.normals && !options_.depth;
-    return colors_alone && single_does(subject, color_) &&
-           beside_rough_hits(subject) < farthest_rough * subject.bounds.diagonal();
-  }
-
-  // Where colours alone count, and are the same on both sides of the surface, no one sees where
-  // exactly it lies.
-  void paint_roughly(const Subject& subject, std::span<Ray* const> rays, Watch& watch) const {
-    thread_local std::vector<Hit> hits;
-    thread_local std::vector<Ray*> placed, others;
-    thread_local std::vector<size_t> open;
-    hits.clear();
-    placed.clear();
-    others.clear();
-    find_rough_roots(subject, rays, beside_rough_hits(subject), watch);
-    for (Ray* ray : rays) {
-      if (std::isnan(ray->trial)) {
-        others.push_back(ray);
-      } else {
-        Hit& hit = hits.emplace_back();
-        hit.at = ray->line.at(ray->trial);
-        hit.toward = -ray->per_length * ray->line.along;
-        placed.push_back(ray);
-      }
+  // Paints the table's rays where the colours on both sides of the surface are the same; leaves the
+  // others to be painted exactly.
+  void paint_roughly(const Subject& subject, TileHits& hits, Watch& watch) const {
+    RayTable& table = hits.table;
+    mix_colors(subject, color_, table, watch, [&](size_t i, const std::array<float, 3>& color) {
+      float* const pixel = image_.at(table.x[i], table.y[i]);
+      std::copy(color.begin(), color.end(), pixel);
+      pixel[3] = 1;
+    });
+    for (size_t i = 0; i < table.count; ++i) {
+      if (std::isnan(table.trial[i])) hits.rays.push_back(ray_of(subject, table, i));
     }
-    find_rough_colors(subject, color_, hits, open, watch);
-    for (size_t i = 0; i < hits.size(); ++i) set(placed[i]->x, placed[i]->y, hits[i], 0);
-    for (const size_t i : open) others.push_back(placed[i]);
-    paint_exactly(subject, others, watch);
+    table.count = 0;
   }
 
-  void paint_exactly(const Subject& subject, std::span<Ray* const> rays, Watch& watch) const {
-    find_roots(subject, rays, watch);
+  void paint_exactly(const Subject& subject, TileHits& found, Watch& watch) const {
+    const std::span<const Ray> rays = on_surface(subject, found, watch);
     std::vector<Hit> hits;
     hits.reserve(rays.size());
-    for (const Ray* ray : rays) {
-      hits.push_back({ray->line.at(ray->beyond), -1.0 * normalized(ray->line.along)});
+    for (const Ray& ray : rays) {
+      hits.push_back({ray.line.at(ray.beyond), -1.0 * normalized(ray.line.along)});
     }
     if (options_.look != RenderLook::flat || options_.normals) find_normals(subject, hits, watch);
     color(subject, hits, watch);
-    for (size_t i = 0; i < hits.size(); ++i) {
-      set(rays[i]->x, rays[i]->y, hits[i], rays[i]->beyond);
-    }
+    for (size_t i = 0; i < hits.size(); ++i) set(rays[i].x, rays[i].y, hits[i], rays[i].beyond);
   }
 
   void color(const Subject& subject, std::vector<Hit>& hits, Watch& watch) const {
@@ -222,6 +253,8 @@ class Painter {
   const RenderOptions& options_;
   Image& image_;
   Evaluator color_;
+  // No one sees where exactly the surface lies, if the colours on both its sides are the same.
+  bool shows_colors_alone_;
 };
 
 }  // namespace
@@ -281,10 +314,9 @@ std::vector<double> render_depths(const Evaluator& solid, const BoundingBox& bou
   rendering::for_tiles(
       solid, bounds, options, progress,
       [&](const auto& subject, const rendering::Tile& tile, rendering::Watch& watch) {
-        const auto rays = rendering::met(rendering::cast(subject, tile, options, watch));
-        rendering::find_roots(subject, rays, watch);
-        for (const rendering::Ray* ray : rays) {
-          depths[size_t(ray->y) * options.width + ray->x] = ray->beyond;
+        rendering::TileHits& hits = rendering::cast(subject, tile, options, watch);
+        for (const rendering::Ray& ray : rendering::on_surface(subject, hits, watch)) {
+          depths[size_t(ray.y) * options.width + ray.x] = ray.beyond;
         }
       });
   return depths;

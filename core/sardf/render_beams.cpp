@@ -1,6 +1,7 @@
 // Beams: squares of pixels whose rays go from ball to ball together, in ever smaller squares.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "sardf/render_stages.hpp"
 
@@ -14,15 +15,6 @@ constexpr int most_steps = 64;
 // By depth: less would be lost in its roundings.
 constexpr double least_tolerance = 1e-14;
 constexpr int split = 4;  // along each side
-constexpr int smallest_edge = 8;
-
-struct Beam {
-  double x, y, edge;  // the middle and the side, in pixels
-  double clear;       // nothing of the solid lies before this depth
-  Line line{};
-  Spread spread{};
-  bool done = false;
-};
 
 Vec3 clamped(const BoundingBox& box, const Vec3& p) {
   Vec3 out;
@@ -97,79 +89,60 @@ std::vector<Beam> split_beams(const std::vector<Beam>& beams, double end) {
   return parts;
 }
 
-// The stretches of a row's rays in the box as arrays, which the compiler makes SIMD of: what
-// stretch_in says, but that a ray which only touches the box may have none.
-struct Row {
-  static constexpr int capacity = smallest_edge;
-  double from[3][capacity], along[3][capacity], begin[capacity], end[capacity];
+double tolerance_of(const Subject& subject, const Ray& ray) {
+  return std::max(subject.tolerance * ray.per_length, least_tolerance * ray.end);
+}
 
-  void set(int i, const Line& line) {
-    for (int axis = 0; axis < 3; ++axis) {
-      from[axis][i] = line.from[axis];
-      along[axis][i] = line.along[axis];
-    }
-  }
-  void stretch(const BoundingBox& box) {
-    std::fill_n(begin, capacity, 0.0);
-    std::fill_n(end, capacity, infinity);
-    for (int axis = 0; axis < 3; ++axis) {
-      const double lo = box.lo[axis], hi = box.hi[axis];
-      for (int i = 0; i < capacity; ++i) {
-        // A line that moves less than this has left no box along the axis where all numbers end.
-        const double a = std::abs(along[axis][i]) > 1e-280 ? along[axis][i] : 1e-280;
-        const double inverse = 1 / a;
-        const double first = (lo - from[axis][i]) * inverse, last = (hi - from[axis][i]) * inverse;
-        begin[i] = std::max(begin[i], std::min(first, last));
-        end[i] = std::min(end[i], std::max(first, last));
-      }
-    }
-  }
-};
-
-// Finishes a ray that has pixel, line, per_length and end; false where it is clear to its end.
-bool begin_ray(const Subject& subject, double clear, Ray& ray) {
-  ray.clear = clear;
-  if (!(ray.clear <= ray.end)) return false;
-  ray.clear = subject.slopes.clear_until(ray.line, ray.clear, std::nan(""));
-  ray.tolerance = std::max(subject.tolerance * ray.per_length, least_tolerance * ray.end);
+// A ray that may have something to look for; none where it is clear to its end.
+std::optional<Ray> ray_at(const Subject& subject, const Beam& beam, int x, int y) {
+  Ray ray;
+  ray.x = x;
+  ray.y = y;
+  ray.line = subject.rays.through(x + 0.5, y + 0.5);
+  // A bound for all of the beam's does: over a few pixels it hardly changes.
+  ray.per_length = subject.rays.shortest_step(beam.x, beam.y, beam.edge);
+  const Stretch stretch = stretch_in(ray.line, subject.bounds);
+  ray.end = stretch.end;
+  const double clear = std::max(beam.clear, stretch.begin);
+  if (!(clear <= ray.end)) return std::nullopt;
+  ray.clear = subject.slopes.clear_until(ray.line, clear, std::nan(""));
+  ray.tolerance = tolerance_of(subject, ray);
   ray.trial = std::min(ray.clear + ray.tolerance, ray.end);
   ray.before = ray.before_value = std::nan("");
   ray.beyond = ray.beyond_value = infinity;
-  return ray.clear <= ray.end;
+  return ray.clear <= ray.end ? std::optional(ray) : std::nullopt;
 }
 
-// Appends the rays of the beam's pixels.
-void append_rays(const Subject& subject, const Beam& beam, int width, int height,
-                 std::vector<Ray>& rays) {
-  const int left = int(beam.x - 0.5 * beam.edge), top = int(beam.y - 0.5 * beam.edge);
-  const int right = std::min(width, left + int(beam.edge));
-  const int bottom = std::min(height, top + int(beam.edge));
-  // A bound for all of them does: over a few pixels it hardly changes.
-  const double per_length = subject.rays.shortest_step(beam.x, beam.y, beam.edge);
-  Row row{};
-  for (int y = top; y < bottom; ++y) {
-    for (int x = left; x < right; ++x) row.set(x - left, subject.rays.through(x + 0.5, y + 0.5));
-    row.stretch(subject.bounds);
-    for (int i = 0; i < right - left; ++i) {
-      if (row.begin[i] > row.end[i]) continue;
-      Ray& ray = rays.emplace_back();
-      ray.x = left + i;
-      ray.y = y;
-      for (int axis = 0; axis < 3; ++axis) {
-        ray.line.from[axis] = row.from[axis][i];
-        ray.line.along[axis] = row.along[axis][i];
-      }
-      ray.per_length = per_length;
-      ray.end = row.end[i];
-      if (!begin_ray(subject, std::max(beam.clear, row.begin[i]), ray)) rays.pop_back();
-    }
-  }
+std::array<float, 3> floats(const Vec3& a) { return {float(a[0]), float(a[1]), float(a[2])}; }
+
+RaySquare square_of(const Subject& subject, const Beam& beam, int width, int height) {
+  // Neighbouring rays differ by the same everywhere.
+  const Rays& rays = subject.rays;
+  const Line middle = rays.through(beam.x, beam.y), right = rays.through(beam.x + 1, beam.y),
+             down = rays.through(beam.x, beam.y + 1);
+  const double begin = subject.frame.begin;
+  const Vec3 from = middle.at(begin);
+  RaySquare square;
+  square.from = floats(from - subject.bounds.center());
+  square.from_right = floats(right.at(begin) - from);
+  square.from_down = floats(down.at(begin) - from);
+  square.along = floats(middle.along);
+  square.along_right = floats(right.along - middle.along);
+  square.along_down = floats(down.along - middle.along);
+  const double slack = double(subject.frame.range) * depth_slack;
+  square.clear = float(std::max(0.0, beam.clear - begin - slack));
+  square.per_length =
+      float(rays.shortest_step(beam.x, beam.y, beam.edge) * (1 - 2 * rounding_unit));
+  square.left = int(beam.x - 0.5 * beam.edge);
+  square.top = int(beam.y - 0.5 * beam.edge);
+  square.right = std::min(width, square.left + RaySquare::edge);
+  square.bottom = std::min(height, square.top + RaySquare::edge);
+  return square;
 }
 
 }  // namespace
 
-void begin_rays(const Subject& subject, const Tile& tile, int width, int height,
-                std::vector<Ray>& rays, Watch& watch) {
+std::vector<Beam> find_beams(const Subject& subject, const Tile& tile, Watch& watch) {
   const Stretch depths = subject.rays.depths(subject.bounds);
   const double middle = 0.5 * tile.edge;
   std::vector<Beam> beams{{tile.x + middle, tile.y + middle, double(tile.edge), depths.begin}};
@@ -182,11 +155,55 @@ void begin_rays(const Subject& subject, const Tile& tile, int width, int height,
     if (beams.empty() || beams[0].edge <= smallest_edge) break;
     beams = split_beams(beams, depths.end);
   }
-  rays.clear();
+  std::erase_if(beams, [&](const Beam& beam) { return beam.clear >= depths.end; });
+  return beams;
+}
+
+void begin_rays(const Subject& subject, const std::vector<Beam>& beams, int width, int height,
+                RayTable& table) {
+  table.count = 0;
   for (const Beam& beam : beams) {
-    if (beam.clear >= depths.end) continue;
-    append_rays(subject, beam, width, height, rays);
+    ray_kernels().begin(subject.frame, square_of(subject, beam, width, height), table);
   }
+}
+
+void begin_rays(const Subject& subject, const std::vector<Beam>& beams, int width, int height,
+                std::vector<Ray>& rays) {
+  for (const Beam& beam : beams) {
+    const int left = int(beam.x - 0.5 * beam.edge), top = int(beam.y - 0.5 * beam.edge);
+    const int right = std::min(width, left + smallest_edge);
+    const int bottom = std::min(height, top + smallest_edge);
+    for (int y = top; y < bottom; ++y) {
+      for (int x = left; x < right; ++x) {
+        if (const auto ray = ray_at(subject, beam, x, y)) rays.push_back(*ray);
+      }
+    }
+  }
+}
+
+Ray ray_of(const Subject& subject, const RayTable& table, size_t i) {
+  Ray ray;
+  ray.x = table.x[i];
+  ray.y = table.y[i];
+  ray.line = subject.rays.through(ray.x + 0.5, ray.y + 0.5);
+  ray.per_length = double(table.per_length[i]);
+  const auto depth = [&](float t) { return subject.frame.begin + double(t); };
+  // What a place that is off by so much can change of a value.
+  const double moved = subject.slopes.largest() * double(subject.frame.misplaced);
+  const bool is_before = double(table.before_value[i]) < -moved;
+  ray.before = is_before ? depth(table.before[i]) : std::nan("");
+  ray.before_value = is_before ? double(table.before_value[i]) : std::nan("");
+  ray.clear = depth(table.clear[i]);
+  ray.beyond = table.state_of(i) == RayTable::going ? infinity : depth(table.beyond[i]);
+  ray.beyond_value = double(table.beyond_value[i]);
+  if (table.state_of(i) == RayTable::met && is_before && ray.beyond_value > moved) {
+    ray.state = Ray::State::met;
+    return ray;
+  }
+  ray.end = stretch_in(ray.line, subject.bounds).end;
+  ray.tolerance = tolerance_of(subject, ray);
+  ray.trial = std::min({ray.clear + ray.tolerance, ray.beyond, ray.end});
+  return ray;
 }
 
 }  // namespace sardf::rendering

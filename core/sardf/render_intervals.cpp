@@ -64,7 +64,7 @@ void march_by_intervals(const Subject& subject, std::span<Ray> rays, Watch& watc
   const auto is_on_its_way = [](const Ray& ray) { return ray.state == Ray::State::on_its_way; };
   while (std::any_of(rays.begin(), rays.end(), is_on_its_way)) {
     for (Ray& ray : rays) clear_stretches(subject, ray, watch);
-    march<double>(subject, rays, samples_between, watch);
+    march(subject, rays, samples_between, watch);
   }
 }
 

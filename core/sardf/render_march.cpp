@@ -20,9 +20,6 @@ using State = Ray::State;
 
 double surest_trial(const Ray& ray) { return std::min(ray.clear + ray.tolerance, ray.end); }
 
-// The share of the expected step that is taken, and the least by which a guess must be farther.
-constexpr double caution = 0.95, least_gain = 1.1;
-
 // With the depths d and e of the field at two places, and its slope -k between them as a share of
 // the bound, balls around both touch when they are (d + e) / L apart, and e = d - k L times that.
 double next_trial(const Ray& ray, double reach, double former, double former_value) {
@@ -37,18 +34,17 @@ double next_trial(const Ray& ray, double reach, double former, double former_val
 }
 
 // `point` is where the sample was taken. NaN lies outside and proves nothing.
-void use_sample(const Subject& subject, Ray& ray, const Vec3& point, double value, double error,
-                bool decides) {
-  const double surest = surest_trial(ray);
+void use_sample(const Subject& subject, Ray& ray, const Vec3& point, double value) {
+  const double error = subject.error_double, surest = surest_trial(ray);
   const bool is_guess = ray.trial > surest;
-  if (!(value < (decides ? 0 : -error)) && !(decides && std::isnan(value))) {
+  if (value >= 0) {
     if (is_guess) {
       ray.trial = surest;
       return;
     }
     ray.beyond = ray.trial;
     ray.beyond_value = value;
-    ray.state = decides || value > error ? State::met : State::unsure;
+    ray.state = State::met;
     return;
   }
   const double reach = subject.slopes.clear_radius(point, -value - error) * ray.per_length;
@@ -65,24 +61,79 @@ void use_sample(const Subject& subject, Ray& ray, const Vec3& point, double valu
   if (!(ray.clear < ray.end)) ray.state = State::missed;
 }
 
+// The depths that a table's samples prove clear, where the slope changes from place to place.
+void find_reaches(const Subject& subject, const RayTable& table, size_t first, size_t n,
+                  const RayBlock& block, float* reach) {
+  for (size_t k = 0; k < n; ++k) {
+    reach[k] = 0;
+    const double depth = -double(block.value[k]) - double(subject.frame.error);
+    if (table.state_of(first + k) != RayTable::going || !(depth > 0)) continue;
+    const Vec3 at{block.xyz[0][k], block.xyz[1][k], block.xyz[2][k]};
+    const double radius = subject.slopes.clear_radius(at, depth) - double(subject.frame.misplaced);
+    reach[k] = float(radius * double(table.per_length[first + k]) * (1 - depth_slack));
+  }
+}
+
+// One step of all rays; the number of those that are going on.
+size_t step(const Subject& subject, RayTable& table, Watch& watch) {
+  const RayKernels& kernels = ray_kernels();
+  thread_local RayBlock block;
+  thread_local float reaches[RayBlock::capacity];
+  float* const reach = subject.slopes.is_uniform() ? nullptr : reaches;
+  size_t going = 0;
+  for (size_t first = 0; first < table.count; first += RayBlock::capacity) {
+    watch.check();
+    const size_t n = std::min(RayBlock::capacity, table.count - first);
+    kernels.place(subject.frame, table, first, n, block);
+    float* out = block.value;
+    subject.solid.block(block.xyz[0], block.xyz[1], block.xyz[2], n, &out);
+    if (reach) find_reaches(subject, table, first, n, block, reach);
+    going += kernels.use(subject.frame, table, first, n, block.value, reach);
+  }
+  return going;
+}
+
+// Of whole blocks, rays behind the last one count as ended.
+void end_room(RayTable& table) {
+  std::fill_n(&table.state[table.count], table.room - RayTable::capacity, float(RayTable::missed));
+}
+
 }  // namespace
 
-template <class T>
+void march(const Subject& subject, RayTable& table, int most_steps, RayTable& found,
+           std::vector<Ray>& open, Watch& watch) {
+  // Ended rays cost as much as others until they are taken out, which costs more than a step.
+  constexpr double crowded = 0.75;
+  const auto take_ended = [&] {
+    table.keep_going([&](size_t i) {
+      if (table.state_of(i) == RayTable::met) found.append(table, i);
+      if (table.state_of(i) == RayTable::unsure) open.push_back(ray_of(subject, table, i));
+    });
+    end_room(table);
+  };
+  found.count = 0;
+  take_ended();
+  for (int steps = 0; steps < most_steps && table.count > 0; ++steps) {
+    const size_t going = step(subject, table, watch);
+    if (double(going) < crowded * double(table.count)) take_ended();
+  }
+  take_ended();
+  for (size_t i = 0; i < table.count; ++i) open.push_back(ray_of(subject, table, i));
+  table.count = 0;
+}
+
 void march(const Subject& subject, std::span<Ray> rays, int most_steps, Watch& watch) {
-  constexpr bool decides = std::is_same_v<T, double>;
-  const double error = decides ? subject.error_double : subject.error_single;
   thread_local std::vector<Ray*> active;
   active.clear();
   for (Ray& ray : rays) {
-    if (decides && ray.state == State::unsure) ray.state = State::on_its_way;
     if (ray.state == State::on_its_way) active.push_back(&ray);
   }
-  thread_local Block<T> block;
+  thread_local Block<double> block;
   for (int steps = 0; steps < most_steps && !active.empty(); ++steps) {
-    for (size_t first = 0; first < active.size(); first += Block<T>::capacity) {
+    for (size_t first = 0; first < active.size(); first += block.capacity) {
       watch.check();
-      const size_t n = std::min(Block<T>::capacity, active.size() - first);
-      Vec3 points[Block<T>::capacity];
+      const size_t n = std::min(block.capacity, active.size() - first);
+      Vec3 points[Block<double>::capacity];
       for (size_t i = 0; i < n; ++i) {
         const Ray& ray = *active[first + i];
         points[i] = ray.line.at(ray.trial);
@@ -90,14 +141,11 @@ void march(const Subject& subject, std::span<Ray> rays, int most_steps, Watch& w
       }
       block.evaluate(subject.solid, n);
       for (size_t i = 0; i < n; ++i) {
-        use_sample(subject, *active[first + i], points[i], double(block.value[i]), error, decides);
+        use_sample(subject, *active[first + i], points[i], block.value[i]);
       }
     }
     std::erase_if(active, [](const Ray* ray) { return ray->state != State::on_its_way; });
   }
 }
-
-template void march<float>(const Subject&, std::span<Ray>, int, Watch&);
-template void march<double>(const Subject&, std::span<Ray>, int, Watch&);
 
 }  // namespace sardf::rendering

@@ -65,10 +65,10 @@ void use_value(Bracket& b, double value, double diagonal, int step) {
 
 }  // namespace
 
-void find_roots(const Subject& subject, std::span<Ray* const> rays, Watch& watch) {
+void find_roots(const Subject& subject, std::span<Ray> rays, Watch& watch) {
   thread_local std::vector<Bracket> brackets;
   brackets.clear();
-  for (Ray* ray : rays) brackets.push_back(bracket_of(*ray));
+  for (Ray& ray : rays) brackets.push_back(bracket_of(ray));
   for (Bracket& b : brackets) set_first_trial(b);
   const double diagonal = subject.bounds.diagonal();
   thread_local Block<double> block;
@@ -84,32 +84,6 @@ void find_roots(const Subject& subject, std::span<Ray* const> rays, Watch& watch
       for (size_t i = 0; i < n; ++i) use_value(brackets[first + i], block.value[i], diagonal, step);
     }
     std::erase_if(brackets, [](const Bracket& b) { return b.done; });
-  }
-}
-
-void find_rough_roots(const Subject& subject, std::span<Ray* const> rays, double aside,
-                      Watch& watch) {
-  constexpr size_t half = Block<float>::capacity / 2;
-  const double error = subject.error_single;
-  thread_local Block<float> block;
-  for (size_t first = 0; first < rays.size(); first += half) {
-    watch.check();
-    const size_t n = std::min(half, rays.size() - first);
-    for (size_t i = 0; i < n; ++i) {
-      Ray& ray = *rays[first + i];
-      Bracket b = bracket_of(ray);
-      set_first_trial(b);
-      ray.trial = b.trial;
-      const Vec3 at = ray.line.at(b.trial), way = aside * ray.per_length * ray.line.along;
-      block.set(i, at - way);
-      block.set(n + i, at + way);
-    }
-    block.evaluate(subject.solid, 2 * n);
-    for (size_t i = 0; i < n; ++i) {
-      if (!(block.value[i] < -error && block.value[n + i] > error)) {
-        rays[first + i]->trial = std::nan("");
-      }
-    }
   }
 }
 

@@ -118,6 +118,7 @@ std::vector<double> sky_shares(const Subject& subject, std::span<const Hit> hits
 
 // How far from the surface, along the ray and in diagonals, normals and colours are taken.
 constexpr double beside = 1e-5;
+constexpr double farthest_aside = 1e-4;
 // Colours in single precision are taken on both sides of the surface. Where a colour changes
 // abruptly on the surface, or rounding tells, the two differ.
 constexpr double equal_colors = 0.25 / 255;
@@ -183,28 +184,43 @@ void find_normals(const Subject& subject, std::span<Hit> hits, Watch& watch) {
 }
 
 // What has no formula is evaluated in double in any case: twice would be a waste.
-bool single_does(const Subject& subject, const Evaluator& color) {
+bool single_does(const BoundingBox& box, const Evaluator& color) {
   for (const Instruction& i : color.tape().instructions()) {
     if (!i.operation->has_formula()) return false;
   }
-  const BoundingBox& box = subject.bounds;
   return norm(box.lo) + norm(box.hi) < far * box.diagonal();
 }
 
-double beside_rough_hits(const Subject& subject) {
-  // Far enough that rounding does not hide on which side of the surface a place lies.
-  return beside * subject.bounds.diagonal() + 4 * subject.error_single;
-}
-
-void find_rough_colors(const Subject& subject, const Evaluator& color, std::span<Hit> hits,
-                       std::vector<size_t>& open, Watch& watch) {
-  find_single_colors(color, hits, beside_rough_hits(subject), open, watch);
+void mix_colors(const Subject& subject, const Evaluator& color, RayTable& table, Watch& watch,
+                const std::function<void(size_t, const std::array<float, 3>&)>& use) {
+  constexpr size_t half = RayBlock::capacity / 2;
+  thread_local RayBlock block;
+  float* const value = block.value;
+  float* const channels[3] = {block.channels[0], block.channels[1], block.channels[2]};
+  // Far enough that rounding does not hide on which side of the surface a place lies, and nearer
+  // than a tenth of a pixel.
+  const double diagonal = subject.bounds.diagonal();
+  const float aside = float(
+      std::min(beside * diagonal + 4 * double(subject.frame.error), farthest_aside * diagonal));
+  for (size_t first = 0; first < table.count; first += half) {
+    watch.check();
+    const size_t n = std::min(half, table.count - first);
+    const size_t behind = (n + 15) / 16 * 16;
+    ray_kernels().place_aside(subject.frame, table, first, n, aside, behind, block);
+    subject.solid.block(block.xyz[0], block.xyz[1], block.xyz[2], behind + n, &value);
+    color.block(block.xyz[0], block.xyz[1], block.xyz[2], behind + n, channels);
+    ray_kernels().mix(subject.frame, table, first, n, float(equal_colors), behind, block);
+    for (size_t i = 0; i < n; ++i) {
+      if (std::isnan(table.trial[first + i])) continue;
+      use(first + i, {channels[0][i], channels[1][i], channels[2][i]});
+    }
+  }
 }
 
 void find_colors(const Subject& subject, const Evaluator& color, std::span<Hit> hits,
                  Watch& watch) {
   std::vector<size_t> open;
-  if (single_does(subject, color)) {
+  if (single_does(subject.bounds, color)) {
     find_single_colors(color, hits, beside * subject.bounds.diagonal(), open, watch);
   } else {
     open.resize(hits.size());

@@ -1,6 +1,7 @@
 // The colours of what rays meet; private to core/sardf/render*.cpp.
 #pragma once
 
+#include <functional>
 #include <span>
 
 #include "sardf/render.hpp"
@@ -19,17 +20,15 @@ struct Hit {
 /// The outward normals of the hits.
 void find_normals(const Subject& subject, std::span<Hit> hits, Watch& watch);
 
-/// Whether single precision serves for colours.
-bool single_does(const Subject& subject, const Evaluator& color);
+/// Whether single precision serves for colours within the box.
+bool single_does(const BoundingBox& box, const Evaluator& color);
 /// The colours themselves, as POV-Ray's flat picture has them: limited to [0, 1]. In single
 /// precision where `single_does` and that is seen to do.
 void find_colors(const Subject& subject, const Evaluator& color, std::span<Hit> hits, Watch& watch);
-/// How far from the surface along the rays, in scene units, colours in single precision are taken
-/// of hits that are known in single precision only.
-double beside_rough_hits(const Subject& subject);
-/// The colours of such hits; the numbers of those whose colour is not told come into `open`.
-void find_rough_colors(const Subject& subject, const Evaluator& color, std::span<Hit> hits,
-                       std::vector<size_t>& open, Watch& watch);
+/// The colours of the table's rays, all of which have met the solid: use(i, colour) where both
+/// sides of the surface have the same; the trial of the others becomes NaN.
+void mix_colors(const Subject& subject, const Evaluator& color, RayTable& table, Watch& watch,
+                const std::function<void(size_t, const std::array<float, 3>&)>& use);
 
 /// Lights the colours: a key light with a soft shadow and two without, placed as in povray_gen's
 /// lit picture, and a share of the sky by distances along the normal.

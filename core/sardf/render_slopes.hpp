@@ -26,6 +26,8 @@ class LocalSlopes {
   /// A ray whose field has the value -`depth` at t is clear of the solid from there to the t that
   /// is returned; t itself where nothing is known. NaN as depth: no value is known.
   double clear_until(const Line& line, double t, double depth) const;
+  /// Whether all radii are depths by the largest slope.
+  bool is_uniform() const { return levels_.size() == 1; }
   /// Over the whole box.
   double largest() const { return levels_[0].around[0]; }
 

@@ -3,7 +3,8 @@
 // A solid is where its field is >= 0. The field changes by at most L along a unit of length, L from
 // certified bounds (render_slopes.hpp), so that a ball of the radius d / L around a point with the
 // value -d holds nothing of it. Beams of rays, then single rays, go from ball to ball; all that is
-// called clear of the solid is proven so.
+// called clear of the solid is proven so. Single precision does most of it, for many rays at once
+// (render_table.hpp); what it leaves open, rays one by one go on with in double.
 #pragma once
 
 #include <span>
@@ -11,6 +12,7 @@
 
 #include "sardf/render_rays.hpp"
 #include "sardf/render_slopes.hpp"
+#include "sardf/render_table.hpp"
 #include "sardf/render_watch.hpp"
 
 namespace sardf::rendering {
@@ -23,8 +25,9 @@ struct Subject {
   LocalSlopes slopes;
   double tolerance;     // scene units, along rays
   double error_single;  // of the field's values
-  double error_double;
+  double error_double = 0;
   bool single = true;  // whether single precision is good enough to begin with
+  RayFrame frame{};    // if `single`
 };
 
 /// Coordinates and values of up to `capacity` points as arrays.
@@ -45,8 +48,7 @@ struct Block {
 struct Ray {
   enum class State : uint8_t {
     on_its_way,
-    unsure,  // single precision does not tell whether `beyond` lies in the solid
-    met,     // `beyond` lies in the solid
+    met,  // `beyond` lies in the solid
     missed,
   };
   int x, y;  // of its pixel, in the picture
@@ -67,14 +69,33 @@ struct Tile {
   int x, y, edge;
 };
 
-/// Replaces `rays` by those of the tile's pixels that beams of rays do not prove to show nothing,
-/// as far as beams are proven clear. The picture's edge cuts the tile.
-void begin_rays(const Subject& subject, const Tile& tile, int width, int height,
-                std::vector<Ray>& rays, Watch& watch);
+/// The beams of a tile that are not proven to show nothing; smallest_edge pixels wide.
+struct Beam {
+  double x, y, edge;  // the middle and the side, in pixels
+  double clear;       // nothing of the solid lies before this depth
+  Line line{};
+  Spread spread{};
+  bool done = false;
+};
+inline constexpr int smallest_edge = RaySquare::edge;
+std::vector<Beam> find_beams(const Subject& subject, const Tile& tile, Watch& watch);
 
-/// Moves on those rays that are on their way, at most `most_steps` steps each, until each is
-/// unsure, has met the solid or missed it. In double no ray becomes unsure, and the unsure go on.
-template <class T>
+/// Replaces the table's rays by those of the beams' pixels. The picture's edge cuts beams.
+void begin_rays(const Subject& subject, const std::vector<Beam>& beams, int width, int height,
+                RayTable& table);
+/// Appends them as single rays.
+void begin_rays(const Subject& subject, const std::vector<Beam>& beams, int width, int height,
+                std::vector<Ray>& rays);
+/// A ray of a table in double. Rays in single precision are not quite the true ones: where that may
+/// matter, it is on its way from where it is proven clear, and what it meets is seen anew.
+Ray ray_of(const Subject& subject, const RayTable& table, size_t i);
+
+/// Moves the table's rays on, at most `most_steps` steps each, until they have missed the solid:
+/// those that are sure to have met it come into `found`, those that are not sure or still on their
+/// way into `open`.
+void march(const Subject& subject, RayTable& table, int most_steps, RayTable& found,
+           std::vector<Ray>& open, Watch& watch);
+/// The like for rays that are on their way, in double.
 void march(const Subject& subject, std::span<Ray> rays, int most_steps, Watch& watch);
 
 /// Brings all rays that are on their way to an end: by intervals of the field, which prove
@@ -82,12 +103,6 @@ void march(const Subject& subject, std::span<Ray> rays, int most_steps, Watch& w
 void march_by_intervals(const Subject& subject, std::span<Ray> rays, Watch& watch);
 
 /// Moves `beyond` of rays that have met the solid onto its surface, in double.
-void find_roots(const Subject& subject, std::span<Ray* const> rays, Watch& watch);
-
-/// For pictures without depth, in single precision: of rays that have met the solid, `trial`
-/// becomes a depth with the surface proven to lie less than `aside` along the ray before or behind
-/// it; NaN where that is not so at the first try. The bracket of `before` and `beyond` stays.
-void find_rough_roots(const Subject& subject, std::span<Ray* const> rays, double aside,
-                      Watch& watch);
+void find_roots(const Subject& subject, std::span<Ray> rays, Watch& watch);
 
 }  // namespace sardf::rendering

@@ -1,0 +1,137 @@
+// Many rays side by side in single precision; private to core/sardf/render*.cpp.
+//
+// Coordinates count from the middle of the box and depths from where the box begins, so that the
+// roundings are shares of the box's size wherever the camera stands. With u = 2^-24, what a ray's
+// place is off by is at most rounding_of_places u times the way from the middle to the place where
+// the ray begins and on to its end: beginnings and directions are rounded four times each, their
+// sum twice, and four more are for ends that are taken too far and places that are then moved back
+// into the box.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "sardf/evaluate.hpp"
+
+namespace sardf::rendering {
+
+inline constexpr double rounding_unit = 0x1p-24;
+inline constexpr double rounding_of_places = 16;
+/// By which depths and lengths are taken shorter, or ends farther, than computed; as a share.
+inline constexpr double depth_slack = 0x1p-22;
+
+/// The share of the expected step that is taken, and the least by which a guess must be farther.
+inline constexpr double caution = 0.95, least_gain = 1.1;
+
+/// What is the same for all rays of a picture.
+struct RayFrame {
+  std::array<float, 3> middle{}, half{};  // of the box
+  double begin = 0;                       // depths in the table count from here
+  float range = 0;                        // the depth of the box's end
+  float error = 0;                        // of the field's values
+  float misplaced = 0;                    // of places, in scene units
+  float per_slope = 0;                    // one by the bound of the slope, not more
+  float tolerance = 0;                    // scene units, along rays
+};
+
+/// A square of pixels whose rays begin together.
+struct RaySquare {
+  static constexpr int edge = 8, rays = edge * edge;
+  // The middle ray, and what a pixel to the right or down adds to it.
+  std::array<float, 3> from, from_right, from_down, along, along_right, along_down;
+  float clear, per_length;
+  int left, top, right, bottom;  // pixels of the picture, those behind the last ones at the end
+};
+
+/// Rays of a tile, by numbers. Whole blocks are worked on: what is behind `count` has no meaning.
+struct RayTable {
+  static constexpr size_t capacity = 32 * 32, room = capacity + 16;
+  using Row = std::array<float, room>;
+  enum State : int { going, missed, met, unsure };
+
+  size_t count = 0;
+  std::array<Row, 3> from, along;
+  Row per_length;            // at most the depth that a unit of length along the ray makes
+  Row end;                   // the ray leaves the box before
+  Row clear;                 // nothing of the solid lies before this depth
+  Row trial;                 // where the next sample is taken
+  Row before, before_value;  // the last sample that lies outside; the value 0: none
+  Row beyond, beyond_value;  // the sample that lies inside, or may do so
+  Row state;                 // a State
+  std::array<uint16_t, room> x, y;
+
+  State state_of(size_t i) const { return State(int(state[i])); }
+  /// Copies a ray of another table to the end of this one.
+  void append(const RayTable& other, size_t i);
+  /// Leaves those that are going; calls leave(i) for each of the others first.
+  template <class Leave>
+  void keep_going(Leave leave);
+
+ private:
+  void move(size_t to, const RayTable& other, size_t i) {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      from[axis][to] = other.from[axis][i];
+      along[axis][to] = other.along[axis][i];
+    }
+    for (const auto row : {&RayTable::per_length, &RayTable::end, &RayTable::clear,
+                           &RayTable::trial, &RayTable::before, &RayTable::before_value,
+                           &RayTable::beyond, &RayTable::beyond_value, &RayTable::state}) {
+      (this->*row)[to] = (other.*row)[i];
+    }
+    x[to] = other.x[i];
+    y[to] = other.y[i];
+  }
+};
+
+inline void RayTable::append(const RayTable& other, size_t i) { move(count++, other, i); }
+
+template <class Leave>
+void RayTable::keep_going(Leave leave) {
+  size_t kept = 0;
+  for (size_t i = 0; i < count; ++i) {
+    if (state_of(i) != going) {
+      leave(i);
+    } else {
+      if (kept < i) move(kept, *this, i);
+      ++kept;
+    }
+  }
+  count = kept;
+}
+
+/// Points of a block and what is there.
+struct RayBlock {
+  static constexpr size_t capacity = Evaluator::block_size;
+  float xyz[3][capacity], value[capacity];
+  float channels[3][capacity];
+};
+
+/// The work on rays [first, first + n), compiled for each instruction set (render_kernels.hpp).
+struct RayKernels {
+  /// Writes the rays of a square at the table's end; those that have nothing to look for are
+  /// missed.
+  void (*begin)(const RayFrame&, const RaySquare&, RayTable&);
+  /// The places of the trials.
+  void (*place)(const RayFrame&, const RayTable&, size_t first, size_t n, RayBlock&);
+  /// Uses the values there. `reach`: how far along each ray its sample proves it clear, or null
+  /// where the frame's slope tells. The number of rays that are still going.
+  size_t (*use)(const RayFrame&, RayTable&, size_t first, size_t n, const float* value,
+                const float* reach);
+  /// `trial` becomes where the surface is expected between `before` and `beyond`; the places
+  /// `aside` before it, and from `behind` on (a multiple of 16, not less than n) those behind it.
+  void (*place_aside)(const RayFrame&, RayTable&, size_t first, size_t n, float aside,
+                      size_t behind, RayBlock&);
+  /// Of places and values so made: where the surface is proven to lie between the two and their
+  /// colours agree to within `equal`, the mean limited to [0, 1] becomes the colour of the former;
+  /// where not, the trial becomes NaN.
+  void (*mix)(const RayFrame&, RayTable&, size_t first, size_t n, float equal, size_t behind,
+              RayBlock&);
+};
+
+/// The kernels that this machine runs.
+const RayKernels& ray_kernels();
+const RayKernels& avx2_ray_kernels();
+const RayKernels& avx512_ray_kernels();
+
+}  // namespace sardf::rendering

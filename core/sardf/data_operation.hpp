@@ -24,6 +24,8 @@ class DataOperation : public Operation {
 
   const OperationInfo& info() const override { return info_; }
   const std::vector<double>& numbers() const override { return identity_; }
+  /// Of what its data are nothing is rounded to single precision but results.
+  double scale() const override { return 0; }
   bool has_formula() const override { return false; }
   /// Never called: there is no formula.
   void record(Trace& trace) const override;

@@ -93,6 +93,9 @@ class Operation {
   virtual const OperationInfo& info() const = 0;
   /// The parameters as numbers; two operations of one name and equal numbers are the same.
   virtual const std::vector<double>& numbers() const = 0;
+  /// The largest magnitude of its parameters that are measured as its arguments and results are:
+  /// with these, what the rounding of single precision is a share of.
+  virtual double scale() const = 0;
 
   virtual double evaluate(const double* in) const = 0;
   virtual void evaluate(const double* const* in, double* out, size_t n) const = 0;

@@ -82,9 +82,14 @@ class OperationOf final : public Operation {
 
   explicit OperationOf(Op op) : op_(std::move(op)) {
     if constexpr (requires { op_.prepare(); }) op_.prepare();
-    auto append = [&](const Parameter&, auto member) { append_numbers(numbers_, op_.*member); };
+    std::vector<double> measured;
+    auto append = [&](const Parameter& parameter, auto member) {
+      append_numbers(numbers_, op_.*member);
+      if (is_measured(parameter)) append_numbers(measured, op_.*member);
+    };
     if constexpr (requires { Op::parameters(append); }) Op::parameters(append);
     for (double a : numbers_) magnitude_ = std::max(magnitude_, std::abs(a));
+    for (double a : measured) scale_ = std::max(scale_, std::abs(a));
     if constexpr (requires { op_.append_edges(numbers_); }) op_.append_edges(numbers_);
     std::array<Enclosure, arity> anything;
     anything.fill({Interval::all(), true});
@@ -98,6 +103,7 @@ class OperationOf final : public Operation {
   }
   const OperationInfo& info() const override { return static_info(); }
   const std::vector<double>& numbers() const override { return numbers_; }
+  double scale() const override { return scale_; }
   const void* object() const override { return &op_; }
   const Kernels& kernels() const override { return best_kernels<Op>(); }
 
@@ -402,6 +408,7 @@ class OperationOf final : public Operation {
   Op op_;
   std::vector<double> numbers_;
   double magnitude_ = 0;
+  double scale_ = 0;
   bool may_be_copy_ = false;
 };
 

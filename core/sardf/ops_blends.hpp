@@ -146,7 +146,7 @@ struct Equivalence {
   double order = 1;
   template <class V>
   static void parameters(V& v) {
-    v(Parameter{"order", "n, the higher, the nearer to the smaller", Unit::none, Range::positive},
+    v(Parameter{"order", "n, the higher, the nearer to the smaller", Unit::ratio, Range::positive},
       &Equivalence::order);
   }
   double gain(Interval, Interval) const { return 1; }

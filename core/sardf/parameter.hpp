@@ -15,7 +15,7 @@ struct Axis {
   Vec3 direction{0, 0, 1};
 };
 
-enum class Unit { none, length, angle, direction };
+enum class Unit { none, length, angle, direction, ratio };
 
 /// What values are accepted beyond being finite; a count is a whole number from 1.
 enum class Range { any, positive, non_negative, count };
@@ -30,6 +30,12 @@ struct Parameter {
   /// Fewest elements of a list.
   int at_least = 0;
 };
+
+/// Whether values are measured in what fields and coordinates are, or may be: not an angle, a
+/// direction, a count or another pure number.
+constexpr bool is_measured(const Parameter& p) {
+  return (p.unit == Unit::none || p.unit == Unit::length) && p.range != Range::count;
+}
 
 // Short forms for the common parameters.
 constexpr Parameter length_of(const char* name, const char* doc) {

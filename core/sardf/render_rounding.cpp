@@ -6,7 +6,7 @@ namespace sardf::rendering {
 
 namespace {
 
-// What each operation's kernels keep to, of the largest argument, parameter or result; the law
+// What each operation's kernels keep to, of the largest argument, scale or result; the law
 // tests of batches check it for every operation (tests/cpp/test_laws_batch.cpp).
 constexpr double operation_error = 8e-7;
 // The middle of a box and a place in it are rounded (render_table.hpp).
@@ -18,11 +18,10 @@ constexpr double largest_number = 1e18, smallest_size = 1e-12;
 // stand in for lengths (mean value theorem), where the values lie within the intervals.
 Slope with_error(const Operation& operation, const Slope* in) {
   Slope out = operation.slope(in);
-  double largest = out.value.magnitude();
+  double largest = max(out.value.magnitude(), operation.scale());
   for (int k = 0; k < operation.info().arity; ++k) {
     largest = std::max(largest, in[k].value.magnitude());
   }
-  for (const double number : operation.numbers()) largest = std::max(largest, std::abs(number));
   out.length =
       largest < largest_number ? rounded_up(out.length + operation_error * largest) : infinity;
   out.partial.fill(Interval::all());  // nothing is known of the errors' directions

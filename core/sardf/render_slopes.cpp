@@ -44,6 +44,7 @@ double largest_around(int cells, const std::vector<double>& of_cell, size_t i) {
 LocalSlopes::LocalSlopes(const Evaluator& field, const BoundingBox& box, int most_cells,
                          const std::function<void()>& check)
     : box_(box) {
+  for (int axis = 0; axis < 3; ++axis) per_side_[axis] = 1 / (box.hi[axis] - box.lo[axis]);
   const double all = bound_of(field.slope(box).length);
   levels_.push_back({1, infinity, {all}, {all}, {0}});
   const auto is_wanting = [&](const Level& level) {
@@ -107,7 +108,7 @@ LocalSlopes::Level LocalSlopes::refined(const Evaluator& field, const Level& coa
 std::array<int, 3> LocalSlopes::cell_of(const Level& level, const Vec3& point) const {
   std::array<int, 3> cell;
   for (int axis = 0; axis < 3; ++axis) {
-    const double share = (point[axis] - box_.lo[axis]) / (box_.hi[axis] - box_.lo[axis]);
+    const double share = (point[axis] - box_.lo[axis]) * per_side_[axis];
     cell[axis] = std::clamp(int(share * level.cells), 0, level.cells - 1);
   }
   return cell;

@@ -46,6 +46,7 @@ class LocalSlopes {
   std::array<int, 3> cell_of(const Level& level, const Vec3& point) const;
 
   BoundingBox box_;
+  Vec3 per_side_{};  // one by its sides
   std::vector<Level> levels_;
   bool walks_ = false;  // the box has no bound: cells by themselves tell more than balls
 };

@@ -1,0 +1,145 @@
+// Single precision in the ray caster: how far it is off, and that the widest lanes do what others
+// do.
+#include <gtest/gtest.h>
+
+#include "laws.hpp"
+#include "sardf/render_kernels.hpp"
+#include "sardf/render_rounding.hpp"
+
+namespace sardf {
+namespace {
+
+using laws::Random;
+using rendering::RayFrame;
+using rendering::RayTable;
+
+struct Place {
+  Vec3 exact;
+  std::array<float, 3> rounded;
+};
+
+// As rays make places: a rounded way from the box's rounded middle.
+Place place_in(Random& r, const BoundingBox& box) {
+  Place place;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double way = r.uniform(-0.5, 0.5) * box.size()[axis];
+    place.exact[axis] = box.center()[axis] + way;
+    place.rounded[size_t(axis)] = float(box.center()[axis]) + float(way);
+  }
+  return place;
+}
+
+BoundingBox box_somewhere(Random& r) {
+  BoundingBox box;
+  const double away = r.chance(0.3) ? 30 : 2;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double middle = r.uniform(-away, away), half = r.decades(-1, 0.7);
+    box.lo[axis] = middle - half;
+    box.hi[axis] = middle + half;
+  }
+  return box;
+}
+
+TEST(RenderSingle, ValuesAreOffByNoMoreThanTheBound) {
+  int bounded = 0, all = 0;
+  double largest_share = 0;
+  for (int k = 0; k < laws::effort(400); ++k) {
+    Random r{uint64_t(k)};
+    const Field field = laws::random_field(r, 1 + r.below(2));
+    const Evaluator evaluator(field.expression());
+    const BoundingBox box = box_somewhere(r);
+    const double bound = rendering::single_precision_error(evaluator, box);
+    ++all;
+    if (!(bound < 0.1 * box.diagonal())) continue;
+    ++bounded;
+    for (int i = 0; i < 100; ++i) {
+      const auto [exact, rounded] = place_in(r, box);
+      float value = 0;
+      float* out = &value;
+      evaluator.block(&rounded[0], &rounded[1], &rounded[2], 1, &out);
+      const double expected = evaluator.value(exact);
+      if (std::isnan(expected)) continue;
+      const double off = std::abs(double(value) - expected);
+      EXPECT_LE(off, bound) << "field " << k << ", seed " << laws::seed();
+      largest_share = std::max(largest_share, off / bound);
+    }
+  }
+  // A bound that is seldom there, or far too large, would hold as well.
+  EXPECT_GT(bounded, all / 4);
+  EXPECT_GT(largest_share, 0.02);
+}
+
+// Numbers as rays have them, ended ones and such as have no last sample among them.
+void fill(Random& r, RayTable& table) {
+  table.count = 64;
+  for (size_t i = 0; i < table.count; ++i) {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      table.from[axis][i] = float(r.uniform(-2, 2));
+      table.along[axis][i] = r.chance(0.1) ? 0 : float(r.uniform(-1.5, 1.5));
+    }
+    table.per_length[i] = float(r.uniform(0.5, 1));
+    table.clear[i] = float(r.uniform(0, 2));
+    table.end[i] = table.clear[i] + float(r.decades(-4, 0));
+    const double ahead = r.chance(0.5) ? r.decades(-5, -3) : r.uniform(0, 1);
+    table.trial[i] = std::min(table.clear[i] + float(ahead), table.end[i]);
+    table.before[i] = table.clear[i] - float(r.decades(-4, -1));
+    table.before_value[i] = r.chance(0.2) ? 0 : -float(r.decades(-5, 0));
+    table.beyond[i] = table.trial[i];
+    table.beyond_value[i] = float(r.decades(-5, -2));
+    table.state[i] = float(r.chance(0.8) ? RayTable::going : 1 + r.below(3));
+  }
+}
+
+RayFrame frame() {
+  RayFrame frame;
+  frame.middle = {3, -2, 0.5f};
+  frame.half = {1, 2, 0.7f};
+  frame.range = 5;
+  frame.error = 1e-5f;
+  frame.misplaced = 1e-6f;
+  frame.per_slope = 0.8f;
+  frame.tolerance = 4e-4f;
+  return frame;
+}
+
+bool same(const RayTable::Row& a, const RayTable::Row& b, size_t n) {
+  for (size_t i = 0; i < n; ++i)
+    if (!(a[i] == b[i] || (std::isnan(a[i]) && std::isnan(b[i])))) return false;
+  return true;
+}
+
+TEST(RenderSingle, TheWidestLanesGiveTheSameBits) {
+  const rendering::RayKernels& baseline = rendering::RayKernelsOf<Baseline>::all_kernels;
+  const rendering::RayKernels& widest = rendering::ray_kernels();
+  const auto one = std::make_unique<RayTable>(), other = std::make_unique<RayTable>();
+  const auto block = std::make_unique<rendering::RayBlock>();
+  const auto block_too = std::make_unique<rendering::RayBlock>();
+  for (int k = 0; k < laws::effort(200); ++k) {
+    Random r{uint64_t(k)};
+    fill(r, *one);
+    *other = *one;
+    const size_t n = one->count;
+    float value[64], reach[64];
+    for (size_t i = 0; i < n; ++i) {
+      value[i] = r.chance(0.05) ? float(std::nan("")) : float(r.sign() * r.decades(-6, 0));
+      reach[i] = float(r.decades(-5, -1));
+    }
+    baseline.place(frame(), *one, 0, n, *block);
+    widest.place(frame(), *other, 0, n, *block_too);
+    for (size_t axis = 0; axis < 3; ++axis)
+      for (size_t i = 0; i < n; ++i) EXPECT_EQ(block->xyz[axis][i], block_too->xyz[axis][i]);
+    const float* const known = r.chance(0.5) ? reach : nullptr;
+    EXPECT_EQ(baseline.use(frame(), *one, 0, n, value, known),
+              widest.use(frame(), *other, 0, n, value, known));
+    for (const auto row :
+         {&RayTable::clear, &RayTable::trial, &RayTable::before, &RayTable::before_value,
+          &RayTable::beyond, &RayTable::beyond_value, &RayTable::state})
+      EXPECT_TRUE(same((*one).*row, (*other).*row, n));
+    baseline.place_aside(frame(), *one, 0, n, 1e-4f, n, *block);
+    widest.place_aside(frame(), *other, 0, n, 1e-4f, n, *block_too);
+    EXPECT_TRUE(same(one->trial, other->trial, n));
+  }
+}
+
+}  // namespace
+}  // namespace sardf

@@ -14,6 +14,57 @@ constexpr int steps = 3;
 constexpr float aligned = 0.5f;
 
 using Values = std::array<float, block_size>;
+using L = Lanes<Baseline>;
+
+/// The points of whole rows of a tile after those on bent triangles have been moved.
+class BentPoints {
+ public:
+  /// Of the points [first, first + n), with the runs of theirs.
+  void move(const TilePoints& points, const Bends& bends, std::span<const TexelRun> runs,
+            size_t first, size_t n) {
+    for (size_t axis = 0; axis < 3; ++axis)
+      std::copy_n(&points.point[axis][first], n, at[axis].begin());
+    for (const TexelRun& run : runs) {
+      const uint32_t bend = bends.of[run.on];
+      if (bend != Bends::none) move(points, bends.bends[bend], run, first);
+    }
+  }
+
+  std::array<std::array<float, block_size + L::width>, 3> at;
+
+ private:
+  /// Whole lanes are moved: what was behind the run is put back.
+  void move(const TilePoints& points, const Bend& bend, const TexelRun& run, size_t first) {
+    const Triangle& on = points.triangles[run.on];
+    const L counts(L::Values{0, 1, 2, 3});
+    const std::array<L, Bend::degree + 1> factor = in_row(bend, run.y - on.y0);
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const float* const from = &points.point[axis][run.first];
+      float* const to = &at[axis][run.first - first];
+      std::array<L, Bend::degree + 1> by;
+      for (size_t p = 0; p <= Bend::degree; ++p) by[p] = L(double(factor[p].v[axis]));
+      for (size_t i = 0; i < run.count; i += L::width) {
+        const L x = L(double(run.x - on.x0) + double(i)) + counts;
+        L sum = by[Bend::degree];
+        for (size_t p = Bend::degree; p-- > 0;) sum = sum * x + by[p];
+        (L::load(from + i) + sum).store(to + i);
+      }
+      L::load(from + run.count).store(to + run.count);
+    }
+  }
+
+  /// The factors of x^p in a row.
+  static std::array<L, Bend::degree + 1> in_row(const Bend& bend, double row) {
+    const L y(row);
+    std::array<L, Bend::degree + 1> result;
+    for (size_t p = 0; p <= Bend::degree; ++p) {
+      L sum = bend.factor[p][Bend::degree - p];
+      for (size_t q = Bend::degree - p; q-- > 0;) sum = sum * y + bend.factor[p][q];
+      result[p] = sum;
+    }
+    return result;
+  }
+};
 
 /// The points of a tile that are on their way, packed: most points are where they belong from the
 /// start, or after one step.
@@ -34,22 +85,86 @@ class Movement {
   }
 
  private:
+  /// Moves the points on bent triangles, and finds the points that are distant then: those go on
+  /// from where they were.
   void find_distant() {
-    for (size_t first = 0; first < points_.count; first += block_size) {
-      const size_t n = std::min(block_size, points_.count - first);
-      Values value;
-      float* out = value.data();
-      solid_.block(&points_.point[0][first], &points_.point[1][first], &points_.point[2][first], n,
-                   &out);
-      for (size_t i = 0; i < n; ++i) {
-        // Written so that a NaN stays where it is.
-        if (!(std::abs(value[i]) > tolerance_)) continue;
-        place_[count_] = static_cast<uint16_t>(first + i);
-        for (size_t axis = 0; axis < 3; ++axis) at_[axis][count_] = points_.point[axis][first + i];
-        start_[count_] = value_[count_] = value[i];
-        ++count_;
-      }
+    thread_local Bends bends;
+    find_bends(solid_, points_, tolerance_, bends);
+    auto run = points_.runs.begin();
+    for_blocks(points_, block_size, [&](int first_row, int last_row) {
+      const auto begin = run;
+      while (run != points_.runs.end() && run->y < last_row) ++run;
+      const size_t first = points_.start[size_t(first_row)];
+      const size_t n = points_.start[size_t(last_row)] - first;
+      const bool bent = std::any_of(
+          begin, run, [&](const TexelRun& each) { return bends.of[each.on] != Bends::none; });
+      if (bent)
+        find_distant_bent(bends, {begin, run}, first, n);
+      else
+        find_distant(first, n);
+    });
+    find_distant_again();
+  }
+
+  /// In a block where no triangle is bent.
+  void find_distant(size_t first, size_t n) {
+    Values value;
+    evaluate(&points_.point[0][first], &points_.point[1][first], &points_.point[2][first], n,
+             value);
+    for_distant(value, n, [&](size_t i) { append(first + i, value[i]); });
+  }
+
+  void find_distant_bent(const Bends& bends, std::span<const TexelRun> runs, size_t first,
+                         size_t n) {
+    bent_.move(points_, bends, runs, first, n);
+    Values value;
+    evaluate(bent_.at[0].data(), bent_.at[1].data(), bent_.at[2].data(), n, value);
+    for_distant(value, n, [&](size_t i) {
+      again_[again_count_++] = static_cast<uint16_t>(first + i);
+      for (size_t axis = 0; axis < 3; ++axis) bent_.at[axis][i] = points_.point[axis][first + i];
+    });
+    for (size_t axis = 0; axis < 3; ++axis)
+      std::copy_n(bent_.at[axis].begin(), n, &points_.point[axis][first]);
+  }
+
+  /// Of the points that were distant with the other points of their triangle, those that are
+  /// distant where they were before.
+  void find_distant_again() {
+    std::array<Values, 3> at;
+    Values value;
+    for (size_t first = 0; first < again_count_; first += block_size) {
+      const size_t n = std::min(block_size, again_count_ - first);
+      for (size_t axis = 0; axis < 3; ++axis)
+        for (size_t i = 0; i < n; ++i) at[axis][i] = points_.point[axis][again_[first + i]];
+      evaluate(at[0].data(), at[1].data(), at[2].data(), n, value);
+      for_distant(value, n, [&](size_t i) { append(again_[first + i], value[i]); });
     }
+  }
+
+  void evaluate(const float* x, const float* y, const float* z, size_t n, Values& value) const {
+    float* out = value.data();
+    solid_.block(x, y, z, n, &out);
+  }
+
+  /// work(i) for the values that are not within the tolerance.
+  template <class Work>
+  void for_distant(const Values& value, size_t n, Work work) const {
+    size_t i = 0;
+    for (; i + L::width <= n; i += L::width) {
+      if (all(abs(L::load(&value[i])) <= L(double(tolerance_)))) continue;
+      for (size_t k = i; k < i + L::width; ++k)
+        if (!(std::abs(value[k]) <= tolerance_)) work(k);
+    }
+    for (; i < n; ++i)
+      if (!(std::abs(value[i]) <= tolerance_)) work(i);
+  }
+
+  void append(size_t place, float value) {
+    if (std::isnan(value)) return;  // stays where it is
+    place_[count_] = static_cast<uint16_t>(place);
+    for (size_t axis = 0; axis < 3; ++axis) at_[axis][count_] = points_.point[axis][place];
+    start_[count_] = value_[count_] = value;
+    ++count_;
   }
 
   /// Newton's step of moving points [first, first + n). Those that go on are packed at `kept`;
@@ -119,6 +234,9 @@ class Movement {
   const Evaluator& solid_;
   TilePoints& points_;
   float tolerance_;
+  BentPoints bent_;
+  std::array<uint16_t, tile_texels> again_;
+  size_t again_count_ = 0;
   size_t count_ = 0;
   std::array<uint16_t, tile_texels> place_;
   std::array<std::array<float, tile_texels>, 3> at_;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -13,6 +14,7 @@
 
 #include "sardf/evaluate.hpp"
 #include "sardf/mesh.hpp"
+#include "sardf/numbers/lanes.hpp"
 
 namespace sardf::baking {
 
@@ -64,6 +66,39 @@ void find_borders(UvLayout& layout, const std::function<void()>& report);
 /// Sorts faces and borders into the tiles that they touch.
 void fill_bins(UvLayout& layout);
 
+/// A number that is linear in texel coordinates: value + x by_x + y by_y.
+struct Linear {
+  double value, by_x, by_y;
+  double at(double x, double y) const { return value + x * by_x + y * by_y; }
+};
+
+/// A triangle of the mesh and of the UV map: the weights of its second and third corner and the
+/// coordinates of its points, all linear from the texel (x0, y0) of the tile on.
+struct Triangle {
+  int x0, y0;
+  Linear b, c;
+  std::array<Linear, 3> point;
+  std::array<Vec3, 3> corner;
+  uint32_t face, second;  // the second of its corners in the face; the first is 0
+  uint32_t texels;        // of the tile
+
+  /// Where weights change so much from texel to texel that rounding would move points off the
+  /// triangle.
+  bool is_thin() const {
+    constexpr double steep = 1e4;
+    return !(std::abs(b.by_x) < steep && std::abs(b.by_y) < steep && std::abs(c.by_x) < steep &&
+             std::abs(c.by_y) < steep);
+  }
+};
+
+/// Points of a row on one triangle, side by side.
+struct TexelRun {
+  uint16_t first;      // of the points
+  uint8_t x, y;        // texel of the first point, from the tile's first on
+  uint8_t count;
+  uint32_t on;  // of the triangles
+};
+
 /// A triangle, or a place beside the mesh, that points of a tile lie on.
 struct PointSurface {
   std::array<float, 3> normal;
@@ -79,7 +114,9 @@ struct TilePoints {
   /// Points by coordinate; what is behind `count` has no meaning.
   std::array<std::array<float, tile_texels + tile_size>, 3> point;
   std::array<uint32_t, tile_texels + tile_size> on;  // of `surfaces`
-  std::vector<PointSurface> surfaces;
+  std::vector<PointSurface> surfaces;  // of the triangles, then those beside the mesh
+  std::vector<Triangle> triangles;
+  std::vector<TexelRun> runs;  // on triangles, in the points' order
 };
 
 /// Of which face the texels of a tile are, and with which weights of its four corners; those of one
@@ -123,6 +160,26 @@ void for_blocks(const TilePoints& points, size_t most, Work work) {
 /// Fills `points` for a tile, and `corners` if it is given.
 void find_texels(const UvLayout& layout, size_t tile, TilePoints& points,
                  TexelCorners* corners = nullptr);
+
+/// How points of a triangle are moved onto a curved surface: by polynomials in the texel coordinates
+/// from the triangle's (x0, y0) on, one for each axis (the fourth lane is unused).
+struct Bend {
+  static constexpr int degree = 4;
+  /// factor[p][q] is that of x^p y^q, 0 where p + q > degree.
+  std::array<std::array<Lanes<Baseline>, degree + 1>, degree + 1> factor;
+};
+
+/// The bends of a tile's triangles.
+struct Bends {
+  static constexpr uint32_t none = UINT32_MAX;
+  std::vector<uint32_t> of;  // for each triangle one of `bends`, or none
+  std::vector<Bend> bends;
+};
+
+/// Finds bends of the triangles whose points they move onto the zero set of `solid`, most of them
+/// to within `tolerance`, by at most the triangle's limit. Triangles with few texels have none, nor
+/// have those that lie on the zero set already.
+void find_bends(const Evaluator& solid, const TilePoints& points, float tolerance, Bends& bends);
 
 /// Moves the points that are farther than `tolerance`, by the field, onto the zero set of `solid`.
 void project(const Evaluator& solid, TilePoints& points, float tolerance);

@@ -86,29 +86,6 @@ std::array<float, 3> direction_of(const Vec3& a) {
   return {float(by * a[0]), float(by * a[1]), float(by * a[2])};
 }
 
-/// A number that is linear in texel coordinates: value + x by_x + y by_y.
-struct Linear {
-  double value, by_x, by_y;
-  double at(double x, double y) const { return value + x * by_x + y * by_y; }
-};
-
-/// A triangle of the mesh and of the UV map: the weights of its second and third corner and the
-/// coordinates of its points, all linear from a texel of the tile on.
-struct Triangle {
-  int x0, y0;
-  Linear b, c;
-  std::array<Linear, 3> point;
-  uint32_t face, second;  // the second of its corners in the face; the first is 0
-
-  /// Where weights change so much from texel to texel that rounding would move points off the
-  /// triangle.
-  bool is_thin() const {
-    constexpr double steep = 1e4;
-    return !(std::abs(b.by_x) < steep && std::abs(b.by_y) < steep && std::abs(c.by_x) < steep &&
-             std::abs(c.by_y) < steep);
-  }
-};
-
 /// The columns of each row of a box where some linear numbers are not negative.
 class Spans {
  public:
@@ -184,14 +161,21 @@ void write_number(uint32_t* to, uint32_t number, size_t n) {
 /// One tile's texels while they are being found.
 class TileRaster {
  public:
-  TileRaster(const UvLayout& layout, size_t tile, TexelCorners* corners)
-      : layout_(layout), mesh_(*layout.mesh), corners_(corners), box_(image_box(layout)) {
+  TileRaster(const UvLayout& layout, size_t tile, TilePoints& out, TexelCorners* corners)
+      : layout_(layout),
+        mesh_(*layout.mesh),
+        out_(out),
+        corners_(corners),
+        box_(image_box(layout)) {
     const int x = static_cast<int>(tile) % layout.tiles_across * tile_size;
     const int y = static_cast<int>(tile) / layout.tiles_across * tile_size;
     box_.limit({x, y, x + tile_size - 1, y + tile_size - 1});
     on_triangle_.fill(0);
     near_border_.fill(0);
     ends_.fill(0);
+    out_.surfaces.clear();
+    out_.triangles.clear();
+    out_.runs.clear();
   }
 
   /// Where faces overlap, the one that was added last is seen.
@@ -223,29 +207,28 @@ class TileRaster {
       }
   }
 
-  void collect(TilePoints& out) {
-    out.x = box_.x0;
-    out.y = box_.y0;
-    out.count = 0;
-    out.surfaces = surfaces_;
+  void collect() {
+    out_.x = box_.x0;
+    out_.y = box_.y0;
+    out_.count = 0;
     for (int row = 0; row < tile_size; ++row) {
       const uint64_t on_mesh = on_triangle_[size_t(row)];
       uint64_t left = on_mesh | near_border_[size_t(row)];
-      out.covered[size_t(row)] = left;
-      out.start[size_t(row)] = static_cast<uint16_t>(out.count);
+      out_.covered[size_t(row)] = left;
+      out_.start[size_t(row)] = static_cast<uint16_t>(out_.count);
       while (left != 0) {
         const int x = std::countr_zero(left);
         int n = 1;
         if (on_mesh >> x & 1) {
           n += std::countr_zero(ends_[size_t(row)] >> x);
-          write_run(out, x, row, size_t(n));
+          write_run(x, row, size_t(n));
         } else {
-          continue_surface(out, box_.x0 + x, box_.y0 + row);
+          continue_surface(box_.x0 + x, box_.y0 + row);
         }
         left &= ~bits_between(x, x + n);
       }
     }
-    out.start[size_t(tile_size)] = static_cast<uint16_t>(out.count);
+    out_.start[size_t(tile_size)] = static_cast<uint16_t>(out_.count);
   }
 
  private:
@@ -269,11 +252,13 @@ class TileRaster {
       made.point[k] = {p[0][k] + made.b.value * e1[k] + made.c.value * e2[k],
                        made.b.by_x * e1[k] + made.c.by_x * e2[k],
                        made.b.by_y * e1[k] + made.c.by_y * e2[k]};
+    made.corner = p;
     made.face = face;
     made.second = second;
-    const uint32_t number = static_cast<uint32_t>(triangles_.size());
-    triangles_.push_back(made);
-    surfaces_.push_back({direction_of(cross(e1, e2)), limit});
+    made.texels = 0;
+    const uint32_t number = static_cast<uint32_t>(out_.triangles.size());
+    out_.triangles.push_back(made);
+    out_.surfaces.push_back({direction_of(cross(e1, e2)), limit});
     fill(made, box, number);
   }
 
@@ -296,19 +281,21 @@ class TileRaster {
   }
 
   /// Writes the n texels of a row from column x on, all on the same triangle.
-  void write_run(TilePoints& out, int x, int row, size_t n) {
+  void write_run(int x, int row, size_t n) {
     const uint32_t number = on_[size_t(row * tile_size + x)];
-    const Triangle& on = triangles_[number];
+    Triangle& on = out_.triangles[number];
     if (on.is_thin()) {
-      write_thin_run(out, on, x, row, n);
+      write_thin_run(on, x, row, n);
     } else {
       for (size_t axis = 0; axis < 3; ++axis)
-        write_line(&out.point[axis][out.count], on.point[axis].at(x - on.x0, row - on.y0),
+        write_line(&out_.point[axis][out_.count], on.point[axis].at(x - on.x0, row - on.y0),
                    on.point[axis].by_x, n);
     }
-    write_number(&out.on[out.count], number, n);
-    if (corners_) write_corners(on, x, row, out.count, n);
-    out.count += n;
+    write_number(&out_.on[out_.count], number, n);
+    if (corners_) write_corners(on, x, row, out_.count, n);
+    out_.runs.push_back({uint16_t(out_.count), uint8_t(x), uint8_t(row), uint8_t(n), number});
+    on.texels += static_cast<uint32_t>(n);
+    out_.count += n;
   }
 
   /// The weights of a triangle's corners at a texel of the tile, on the triangle in spite of
@@ -319,14 +306,14 @@ class TileRaster {
     return {1 - b - c, b, c};
   }
 
-  void write_thin_run(TilePoints& out, const Triangle& on, int x, int row, size_t n) const {
+  void write_thin_run(const Triangle& on, int x, int row, size_t n) {
     const auto& v = mesh_.faces[on.face];
     const Vec3 &p0 = mesh_.vertices[v[0]], &p1 = mesh_.vertices[v[on.second]],
                &p2 = mesh_.vertices[v[on.second + 1]];
     for (size_t i = 0; i < n; ++i) {
       const auto [a, b, c] = weights_at(on, x + static_cast<int>(i), row);
       for (size_t axis = 0; axis < 3; ++axis)
-        out.point[axis][out.count + i] = float(a * p0[axis] + b * p1[axis] + c * p2[axis]);
+        out_.point[axis][out_.count + i] = float(a * p0[axis] + b * p1[axis] + c * p2[axis]);
     }
   }
 
@@ -363,7 +350,7 @@ class TileRaster {
             y - border.a[1] - t * (border.b[1] - border.a[1])};
   }
 
-  void continue_surface(TilePoints& out, int x, int y) const {
+  void continue_surface(int x, int y) {
     const Border& border = layout_.borders[on_[local(x, y)]];
     const double t = along(border, x, y);
     const Vec2 d = offset(border, x, y, t);
@@ -373,22 +360,21 @@ class TileRaster {
     const Vec3 beyond = d[0] * by_x + d[1] * by_y;
     const Vec3 point =
         mixed(mesh_.vertices[border.vertex[0]], mesh_.vertices[border.vertex[1]]) + beyond;
-    for (size_t axis = 0; axis < 3; ++axis) out.point[axis][out.count] = float(point[axis]);
+    for (size_t axis = 0; axis < 3; ++axis) out_.point[axis][out_.count] = float(point[axis]);
     // Beyond a crease the zero set belongs to another face.
     const double limit =
         border.crease ? 0 : 0.5 * (longest_edge(mesh_, border.face) + length_of(beyond));
-    out.on[out.count] = static_cast<uint32_t>(out.surfaces.size());
-    out.surfaces.push_back({direction_of(cross(by_x, by_y)), float(limit)});
-    if (corners_) write_corners(border, t, out.count);
-    ++out.count;
+    out_.on[out_.count] = static_cast<uint32_t>(out_.surfaces.size());
+    out_.surfaces.push_back({direction_of(cross(by_x, by_y)), float(limit)});
+    if (corners_) write_corners(border, t, out_.count);
+    ++out_.count;
   }
 
   const UvLayout& layout_;
   const Mesh& mesh_;
+  TilePoints& out_;
   TexelCorners* corners_;  // or null
   TexelBox box_;
-  std::vector<Triangle> triangles_;
-  std::vector<PointSurface> surfaces_;  // of the triangles
   /// Bits of rows: texels on triangles, those that are the last of a run on the same triangle, and
   /// those near a border.
   std::array<uint64_t, tile_size> on_triangle_, ends_, near_border_;
@@ -409,12 +395,12 @@ void fill_bins(UvLayout& layout) {
 }
 
 void find_texels(const UvLayout& layout, size_t tile, TilePoints& points, TexelCorners* corners) {
-  TileRaster raster(layout, tile, corners);
+  TileRaster raster(layout, tile, points, corners);
   // Where faces overlap, the first one is seen.
   const std::span<const uint32_t> faces = layout.faces.of(tile);
   for (size_t i = faces.size(); i-- > 0;) raster.add_face(faces[i]);
   for (const uint32_t border : layout.borders_near.of(tile)) raster.add_border(border);
-  raster.collect(points);
+  raster.collect();
 }
 
 }  // namespace sardf::baking

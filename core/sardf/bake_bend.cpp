@@ -16,7 +16,6 @@ constexpr int degree = Bend::degree;
 /// whole numbers.
 constexpr size_t nodes = (degree + 1) * (degree + 2) / 2;
 constexpr size_t most_triangles = block_size / nodes;
-constexpr int steps = 2;
 /// The nodes of a smaller triangle would cost more than its texels.
 constexpr uint32_t fewest_texels = 3 * nodes;
 /// Smallest squared cosine between the gradient at a node and the face's normal: 30 degrees. With
@@ -61,8 +60,8 @@ class Nodes {
 
   /// Appends bends for the triangles that have one; none are left.
   void finish(const TilePoints& points, Bends& bends) {
-    keep_curved();
-    for (int step = 0; step < steps && count_ > 0; ++step) take_step(points);
+    if (count_ == 0) return;
+    take_step(points);
     if (count_ == 0) return;
     evaluate();
     for (size_t i = 0; i < count_; ++i) {
@@ -80,38 +79,25 @@ class Nodes {
     solid_.block(at_[0].data(), at_[1].data(), at_[2].data(), size(), &out);
   }
 
-  template <class Keep>
-  void keep_if(Keep keep) {
+  /// Newton's step of all nodes; triangles with a gradient that is not aligned are left out. One
+  /// step is enough for what has_arrived: the other triangles' points are moved one by one.
+  void take_step(const TilePoints& points) {
+    float* const by[3] = {gradient_[0].data(), gradient_[1].data(), gradient_[2].data()};
+    solid_.gradient_block(at_[0].data(), at_[1].data(), at_[2].data(), size(), value_.data(), by);
     size_t kept = 0;
     for (size_t i = 0; i < count_; ++i) {
-      if (!keep(i)) continue;
+      if (!is_aligned(i, points.surfaces[triangle_[i]].normal)) continue;
       triangle_[kept] = triangle_[i];
-      for (auto* row : {&at_[0], &at_[1], &at_[2], &gradient_[0], &gradient_[1], &gradient_[2],
-                        &value_})
-        std::copy_n(&(*row)[i * nodes], nodes, &(*row)[kept * nodes]);
+      for (size_t k = 0; k < nodes; ++k) step_to(kept * nodes + k, i * nodes + k);
       ++kept;
     }
     count_ = kept;
   }
-
-  void keep_curved() {
-    if (count_ == 0) return;
-    evaluate();
-    keep_if([&](size_t i) {
-      return std::any_of(&value_[i * nodes], &value_[i * nodes] + nodes,
-                         [&](float value) { return std::abs(value) > tolerance_; });
-    });
-  }
-
-  /// Newton's step of all nodes; triangles with a gradient that is not aligned are left out.
-  void take_step(const TilePoints& points) {
-    float* const by[3] = {gradient_[0].data(), gradient_[1].data(), gradient_[2].data()};
-    solid_.gradient_block(at_[0].data(), at_[1].data(), at_[2].data(), size(), value_.data(), by);
-    keep_if([&](size_t i) {
-      return is_aligned(i, points.surfaces[triangle_[i]].normal);
-    });
-    for (size_t k = 0; k < size(); ++k)
-      for (size_t axis = 0; axis < 3; ++axis) at_[axis][k] -= step(axis, k);
+  void step_to(size_t to, size_t from) {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      at_[axis][to] = at_[axis][from] - step(axis, from);
+      gradient_[axis][to] = gradient_[axis][from];
+    }
   }
   bool is_aligned(size_t i, const std::array<float, 3>& normal) const {
     for (size_t k = i * nodes; k < (i + 1) * nodes; ++k) {
@@ -208,20 +194,51 @@ class Nodes {
   float tolerance_;
   size_t count_ = 0;
   std::array<uint32_t, most_triangles> triangle_;
-  std::array<Values, 3> at_, gradient_{};
+  std::array<Values, 3> at_, gradient_;
   Values value_;
 };
+
+/// The triangles large enough to have a bend that are not within the tolerance at the middles of
+/// their edges.
+void find_curved(const Evaluator& solid, const TilePoints& points, float tolerance,
+                 std::vector<uint32_t>& curved) {
+  std::array<Values, 3> at;
+  Values value;
+  std::array<uint32_t, block_size / 3> triangle;
+  size_t count = 0;
+  const auto finish = [&] {
+    float* out = value.data();
+    if (count > 0) solid.block(at[0].data(), at[1].data(), at[2].data(), 3 * count, &out);
+    for (size_t i = 0; i < count; ++i)
+      if (std::any_of(&value[3 * i], &value[3 * i] + 3,
+                      [&](float each) { return std::abs(each) > tolerance; }))
+        curved.push_back(triangle[i]);
+    count = 0;
+  };
+  curved.clear();
+  for (uint32_t i = 0; i < points.triangles.size(); ++i) {
+    const Triangle& on = points.triangles[i];
+    if (on.texels < fewest_texels || on.is_thin()) continue;
+    for (size_t k = 0; k < 3; ++k) {
+      const Vec3 middle = 0.5 * (on.corner[k] + on.corner[(k + 1) % 3]);
+      for (size_t axis = 0; axis < 3; ++axis) at[axis][3 * count + k] = float(middle[axis]);
+    }
+    triangle[count] = i;
+    if (++count == triangle.size()) finish();
+  }
+  finish();
+}
 
 }  // namespace
 
 void find_bends(const Evaluator& solid, const TilePoints& points, float tolerance, Bends& bends) {
   bends.of.assign(points.triangles.size(), Bends::none);
   bends.bends.clear();
+  thread_local std::vector<uint32_t> curved;
+  find_curved(solid, points, tolerance, curved);
   Nodes waiting(solid, tolerance);
-  for (uint32_t i = 0; i < points.triangles.size(); ++i) {
-    const Triangle& on = points.triangles[i];
-    if (on.texels < fewest_texels || on.is_thin()) continue;
-    waiting.add(i, on);
+  for (const uint32_t i : curved) {
+    waiting.add(i, points.triangles[i]);
     if (waiting.is_full()) waiting.finish(points, bends);
   }
   waiting.finish(points, bends);

@@ -160,7 +160,8 @@ class Movement {
   }
 
   void append(size_t place, float value) {
-    if (std::isnan(value)) return;  // stays where it is
+    // A NaN stays where it is, as does a point that may not be moved at all.
+    if (std::isnan(value) || points_.surfaces[points_.on[place]].limit == 0) return;
     place_[count_] = static_cast<uint16_t>(place);
     for (size_t axis = 0; axis < 3; ++axis) at_[axis][count_] = points_.point[axis][place];
     start_[count_] = value_[count_] = value;

@@ -117,15 +117,20 @@ class Group {
  private:
   static bool all_finite(const std::vector<float*>& rows, size_t n) {
     using L = Lanes<Baseline>;
-    // 0 times what is not finite is NaN.
-    L zeros(0.0);
+    // 0 times what is not finite is NaN. Several sums, since one would wait for each addition.
+    constexpr size_t at_once = 4 * L::width;
+    std::array<L, 4> zeros;
+    zeros.fill(L(0.0));
     float rest = 0;
     for (const float* row : rows) {
       size_t i = 0;
-      for (; i + L::width <= n; i += L::width) zeros = zeros + L::load(row + i) * L(0.0);
+      for (; i + at_once <= n; i += at_once)
+        for (size_t k = 0; k < 4; ++k)
+          zeros[k] = zeros[k] + L::load(row + i + k * L::width) * L(0.0);
       for (; i < n; ++i) rest += row[i] * 0;
     }
-    for (int k = 0; k < L::width; ++k) rest += zeros.v[k];
+    const L sum = (zeros[0] + zeros[1]) + (zeros[2] + zeros[3]);
+    for (int k = 0; k < L::width; ++k) rest += sum.v[k];
     return rest == 0;
   }
 
@@ -259,6 +264,7 @@ class Baker {
       thread_local const auto points = std::make_unique_for_overwrite<baking::TilePoints>();
       const auto corners =
           normals ? std::make_unique_for_overwrite<baking::TexelCorners>() : nullptr;
+      fetch_covered(tile);
       baking::find_texels(layout_, tile, *points, corners.get());
       found += points->count;
       if (solid_) baking::project(*solid_, *points, tolerance_);
@@ -273,6 +279,17 @@ class Baker {
   std::atomic<size_t> found{0};  // covered texels
 
  private:
+  /// Asks for the memory of the tile's part of `covered`, which arrives while its texels are found.
+  void fetch_covered(size_t tile) const {
+    const size_t size = size_t(layout_.size), across = size_t(layout_.tiles_across);
+    const size_t x = tile % across * baking::tile_size, y = tile / across * baking::tile_size;
+    for (size_t row = y; row < std::min(y + baking::tile_size, size); ++row) {
+      const unsigned char* const first = &covered[row * size + x];
+      __builtin_prefetch(first, 1);
+      __builtin_prefetch(first + std::min(size_t(baking::tile_size), size - x) - 1, 1);
+    }
+  }
+
   const baking::UvLayout& layout_;
   std::optional<Evaluator> solid_;
   std::vector<std::array<float, 4>> tangents_;

@@ -218,7 +218,7 @@ void find_curved(const Evaluator& solid, const TilePoints& points, float toleran
   curved.clear();
   for (uint32_t i = 0; i < points.triangles.size(); ++i) {
     const Triangle& on = points.triangles[i];
-    if (on.texels < fewest_texels || on.is_thin()) continue;
+    if (on.texels < fewest_texels || on.is_thin) continue;
     for (size_t k = 0; k < 3; ++k) {
       const Vec3 middle = 0.5 * (on.corner[k] + on.corner[(k + 1) % 3]);
       for (size_t axis = 0; axis < 3; ++axis) at[axis][3 * count + k] = float(middle[axis]);

@@ -81,14 +81,7 @@ struct Triangle {
   std::array<Vec3, 3> corner;
   uint32_t face, second;  // the second of its corners in the face; the first is 0
   uint32_t texels;        // of the tile
-
-  /// Where weights change so much from texel to texel that rounding would move points off the
-  /// triangle.
-  bool is_thin() const {
-    constexpr double steep = 1e4;
-    return !(std::abs(b.by_x) < steep && std::abs(b.by_y) < steep && std::abs(c.by_x) < steep &&
-             std::abs(c.by_y) < steep);
-  }
+  bool is_thin;           // whether weights change too much from texel to texel for float
 };
 
 /// Points of a row on one triangle, side by side.

@@ -77,13 +77,18 @@ double longest_edge(const Mesh& mesh, uint32_t face) {
   return longest;
 }
 
-/// A number for each texel of a tile, by rows.
-using Numbers = std::array<uint32_t, tile_texels>;
-
 /// Of a vector that may be 0.
 std::array<float, 3> direction_of(const Vec3& a) {
   const double length = length_of(a), by = length > 0 ? 1 / length : 0;
   return {float(by * a[0]), float(by * a[1]), float(by * a[2])};
+}
+
+/// Whether weights change so much from texel to texel that rounding would move points off the
+/// triangle.
+bool is_thin(const Triangle& on) {
+  constexpr double steep = 1e4;
+  return !(std::abs(on.b.by_x) < steep && std::abs(on.b.by_y) < steep &&
+           std::abs(on.c.by_x) < steep && std::abs(on.c.by_y) < steep);
 }
 
 /// The columns of each row of a box where some linear numbers are not negative.
@@ -172,7 +177,7 @@ class TileRaster {
     box_.limit({x, y, x + tile_size - 1, y + tile_size - 1});
     on_triangle_.fill(0);
     near_border_.fill(0);
-    ends_.fill(0);
+    starts_.fill(0);
     out_.surfaces.clear();
     out_.triangles.clear();
     out_.runs.clear();
@@ -220,7 +225,7 @@ class TileRaster {
         const int x = std::countr_zero(left);
         int n = 1;
         if (on_mesh >> x & 1) {
-          n += std::countr_zero(ends_[size_t(row)] >> x);
+          n = length_of_run(x, row);
           write_run(x, row, size_t(n));
         } else {
           continue_surface(box_.x0 + x, box_.y0 + row);
@@ -256,6 +261,7 @@ class TileRaster {
     made.face = face;
     made.second = second;
     made.texels = 0;
+    made.is_thin = is_thin(made);
     const uint32_t number = static_cast<uint32_t>(out_.triangles.size());
     out_.triangles.push_back(made);
     out_.surfaces.push_back({direction_of(cross(e1, e2)), limit});
@@ -272,19 +278,35 @@ class TileRaster {
       const auto [from, to] = spans.of(y);
       const int row = y + triangle.y0, first = from + triangle.x0, last = to + triangle.x0;
       if (first == last) continue;
-      std::fill(&on_[size_t(row * tile_size + first)], &on_[size_t(row * tile_size + last)],
-                number);
-      on_triangle_[size_t(row)] |= bits_between(first, last);
-      ends_[size_t(row)] |= bits_between(last - 1, last);
-      if (first > 0) ends_[size_t(row)] |= bits_between(first - 1, first);
+      mark_run(row, first, last, number);
     }
+  }
+
+  /// The texels [first, last) of a row become a run; what is left of another one behind it begins
+  /// there.
+  void mark_run(int row, int first, int last, uint32_t number) {
+    uint32_t* const on = &on_[size_t(row * tile_size)];
+    uint64_t &starts = starts_[size_t(row)], &covered = on_triangle_[size_t(row)];
+    if (last < tile_size && (covered & ~starts) >> last & 1) {
+      on[last] = on[63 - std::countl_zero(starts & bits_between(0, last))];
+      starts |= bits_between(last, last + 1);
+    }
+    const uint64_t texels = bits_between(first, last);
+    starts = (starts & ~texels) | bits_between(first, first + 1);
+    covered |= texels;
+    on[first] = number;
+  }
+
+  int length_of_run(int x, int row) const {
+    const uint64_t others = ~on_triangle_[size_t(row)] | starts_[size_t(row)];
+    return 1 + std::countr_zero(others >> x >> 1 | uint64_t(1) << (tile_size - 1 - x));
   }
 
   /// Writes the n texels of a row from column x on, all on the same triangle.
   void write_run(int x, int row, size_t n) {
     const uint32_t number = on_[size_t(row * tile_size + x)];
     Triangle& on = out_.triangles[number];
-    if (on.is_thin()) {
+    if (on.is_thin) {
       write_thin_run(on, x, row, n);
     } else {
       for (size_t axis = 0; axis < 3; ++axis)
@@ -375,10 +397,11 @@ class TileRaster {
   TilePoints& out_;
   TexelCorners* corners_;  // or null
   TexelBox box_;
-  /// Bits of rows: texels on triangles, those that are the last of a run on the same triangle, and
-  /// those near a border.
-  std::array<uint64_t, tile_size> on_triangle_, ends_, near_border_;
-  Numbers on_;                                // index of the triangle or of the border
+  /// Bits of rows: texels on triangles, the first ones of runs on the same triangle, and those near
+  /// a border.
+  std::array<uint64_t, tile_size> on_triangle_, starts_, near_border_;
+  /// Index of the triangle, for the first texel of a run, or of the border.
+  std::array<uint32_t, tile_texels> on_;
   std::array<double, tile_texels> distance_;  // to the border, squared
 };
 

@@ -16,8 +16,9 @@ constexpr int degree = Bend::degree;
 /// whole numbers.
 constexpr size_t nodes = (degree + 1) * (degree + 2) / 2;
 constexpr size_t most_triangles = block_size / nodes;
+constexpr int steps = 2;
 /// The nodes of a smaller triangle would cost more than its texels.
-constexpr uint32_t fewest_texels = 3 * nodes;
+constexpr uint32_t fewest_texels = 20;
 /// Smallest squared cosine between the gradient at a node and the face's normal: 30 degrees. With
 /// the 45 degrees of single points this leaves room for those between the nodes.
 constexpr float aligned = 0.75f;
@@ -26,7 +27,6 @@ constexpr float aligned = 0.75f;
 constexpr float share_of_limit = 0.25f;
 
 using Values = std::array<float, block_size>;
-using Node = std::array<double, 3>;
 
 /// Of each node, in rows of equal weight of the third corner.
 constexpr auto places = [] {
@@ -37,10 +37,16 @@ constexpr auto places = [] {
   return all;
 }();
 
-Vec3 position(const Triangle& on, size_t node) {
+/// Of the three corners at a node.
+std::array<float, 3> weights(size_t node) {
   const auto [p, q] = places[node];
-  const double b = double(p) / degree, c = double(q) / degree;
-  return on.corner[0] + b * (on.corner[1] - on.corner[0]) + c * (on.corner[2] - on.corner[0]);
+  const float b = float(p) / degree, c = float(q) / degree;
+  return {1 - b - c, b, c};
+}
+
+Vec3 position(const Triangle& on, size_t node) {
+  const auto [a, b, c] = weights(node);
+  return double(a) * on.corner[0] + double(b) * on.corner[1] + double(c) * on.corner[2];
 }
 
 /// The nodes of some triangles on their way onto the surface, in one block.
@@ -49,23 +55,14 @@ class Nodes {
   Nodes(const Evaluator& solid, float tolerance) : solid_(solid), tolerance_(tolerance) {}
 
   bool is_full() const { return count_ == most_triangles; }
-  void add(uint32_t triangle, const Triangle& on) {
-    triangle_[count_] = triangle;
-    for (size_t k = 0; k < nodes; ++k) {
-      const Vec3 from = position(on, k);
-      for (size_t axis = 0; axis < 3; ++axis) at_[axis][count_ * nodes + k] = float(from[axis]);
-    }
-    ++count_;
-  }
+  void add(uint32_t triangle) { triangle_[count_++] = triangle; }
 
   /// Appends bends for the triangles that have one; none are left.
   void finish(const TilePoints& points, Bends& bends) {
-    if (count_ == 0) return;
-    take_step(points);
-    if (count_ == 0) return;
-    evaluate();
+    if (count_ > 0) find_directions(points);
+    if (count_ > 0) take_steps(points);
     for (size_t i = 0; i < count_; ++i) {
-      if (!has_arrived(i, points)) continue;
+      if (!has_arrived(i, points.surfaces[triangle_[i]].limit)) continue;
       bends.of[triangle_[i]] = static_cast<uint32_t>(bends.bends.size());
       bends.bends.push_back(bend_of(points.triangles[triangle_[i]], i));
     }
@@ -73,64 +70,82 @@ class Nodes {
   }
 
  private:
-  size_t size() const { return count_ * nodes; }
-  void evaluate() {
-    float* out = value_.data();
-    solid_.block(at_[0].data(), at_[1].data(), at_[2].data(), size(), &out);
-  }
-
-  /// Newton's step of all nodes; triangles with a gradient that is not aligned are left out. One
-  /// step is enough for what has_arrived: the other triangles' points are moved one by one.
-  void take_step(const TilePoints& points) {
-    float* const by[3] = {gradient_[0].data(), gradient_[1].data(), gradient_[2].data()};
-    solid_.gradient_block(at_[0].data(), at_[1].data(), at_[2].data(), size(), value_.data(), by);
+  /// The gradients at the corners, as gradient / |gradient|²; triangles where one is not aligned
+  /// are left out.
+  void find_directions(const TilePoints& points) {
+    std::array<Values, 3> at, gradient;
+    Values value;
+    for (size_t i = 0; i < count_; ++i)
+      for (size_t k = 0; k < 3; ++k)
+        for (size_t axis = 0; axis < 3; ++axis)
+          at[axis][3 * i + k] = float(points.triangles[triangle_[i]].corner[k][axis]);
+    float* const by[3] = {gradient[0].data(), gradient[1].data(), gradient[2].data()};
+    solid_.gradient_block(at[0].data(), at[1].data(), at[2].data(), 3 * count_, value.data(), by);
     size_t kept = 0;
     for (size_t i = 0; i < count_; ++i) {
-      if (!is_aligned(i, points.surfaces[triangle_[i]].normal)) continue;
-      triangle_[kept] = triangle_[i];
-      for (size_t k = 0; k < nodes; ++k) step_to(kept * nodes + k, i * nodes + k);
-      ++kept;
+      bool all_aligned = true;
+      for (size_t k = 0; k < 3; ++k) {
+        std::array<float, 3> along;
+        for (size_t axis = 0; axis < 3; ++axis) along[axis] = gradient[axis][3 * i + k];
+        all_aligned = all_aligned && is_aligned(along, points.surfaces[triangle_[i]].normal);
+        const float squared = dot(along, along);
+        for (size_t axis = 0; axis < 3; ++axis) direction_[kept][k][axis] = along[axis] / squared;
+      }
+      if (all_aligned) triangle_[kept++] = triangle_[i];
     }
     count_ = kept;
   }
-  void step_to(size_t to, size_t from) {
-    for (size_t axis = 0; axis < 3; ++axis) {
-      at_[axis][to] = at_[axis][from] - step(axis, from);
-      gradient_[axis][to] = gradient_[axis][from];
-    }
+  static float dot(const std::array<float, 3>& a, const std::array<float, 3>& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   }
-  bool is_aligned(size_t i, const std::array<float, 3>& normal) const {
-    for (size_t k = i * nodes; k < (i + 1) * nodes; ++k) {
-      float cosine = 0;
-      for (size_t axis = 0; axis < 3; ++axis) cosine += gradient_[axis][k] * normal[axis];
-      const float squared = squared_gradient(k);
-      if (!(cosine * cosine >= aligned * squared) || !(squared > 0)) return false;
-    }
-    return true;
-  }
-  float squared_gradient(size_t k) const {
-    return gradient_[0][k] * gradient_[0][k] + gradient_[1][k] * gradient_[1][k] +
-           gradient_[2][k] * gradient_[2][k];
-  }
-  float step(size_t axis, size_t k) const {
-    return value_[k] / squared_gradient(k) * gradient_[axis][k];
+  static bool is_aligned(const std::array<float, 3>& gradient, const std::array<float, 3>& normal) {
+    const float cosine = dot(gradient, normal), squared = dot(gradient, gradient);
+    return cosine * cosine >= aligned * squared && squared > 0;
   }
 
-  bool has_arrived(size_t i, const TilePoints& points) const {
-    const float limit = share_of_limit * points.surfaces[triangle_[i]].limit;
-    for (size_t k = 0; k < nodes; ++k) {
-      if (!(std::abs(value_[i * nodes + k]) <= tolerance_)) return false;
-      const Node by = movement(points.triangles[triangle_[i]], i, k);
-      if (!(dot(by, by) <= double(limit) * double(limit))) return false;
+  /// Steps of all nodes along what the corners' gradients are between them: that is not quite their
+  /// own, so that each step leaves a hundredth of the value.
+  void take_steps(const TilePoints& points) {
+    std::array<Values, 3> along;
+    for (size_t i = 0; i < count_; ++i) {
+      const Triangle& on = points.triangles[triangle_[i]];
+      for (size_t k = 0; k < nodes; ++k) {
+        const std::array<float, 3> weight = weights(k);
+        const Vec3 from = position(on, k);
+        for (size_t axis = 0; axis < 3; ++axis) {
+          const auto& of = direction_[i];
+          along[axis][i * nodes + k] =
+              weight[0] * of[0][axis] + weight[1] * of[1][axis] + weight[2] * of[2][axis];
+          start_[axis][i * nodes + k] = from[axis];
+          at_[axis][i * nodes + k] = float(from[axis]);
+        }
+      }
+    }
+    evaluate();
+    for (int step = 0; step < steps; ++step) {
+      for (size_t axis = 0; axis < 3; ++axis)
+        for (size_t k = 0; k < count_ * nodes; ++k) at_[axis][k] -= value_[k] * along[axis][k];
+      evaluate();
+    }
+    // What rounding and the last step left is taken away unrounded.
+    for (size_t axis = 0; axis < 3; ++axis)
+      for (size_t k = 0; k < count_ * nodes; ++k)
+        movement_[axis][k] =
+            float(double(at_[axis][k]) - start_[axis][k]) - value_[k] * along[axis][k];
+  }
+
+  void evaluate() {
+    float* out = value_.data();
+    solid_.block(at_[0].data(), at_[1].data(), at_[2].data(), count_ * nodes, &out);
+  }
+
+  bool has_arrived(size_t i, float limit) const {
+    const float most = share_of_limit * limit;
+    for (size_t k = i * nodes; k < (i + 1) * nodes; ++k) {
+      const std::array<float, 3> by{movement_[0][k], movement_[1][k], movement_[2][k]};
+      if (!(std::abs(value_[k]) <= tolerance_) || !(dot(by, by) <= most * most)) return false;
     }
     return true;
-  }
-  /// How far node k of the i-th triangle moves. What rounding left is removed by the last gradient.
-  Node movement(const Triangle& on, size_t i, size_t k) const {
-    Node by = position(on, k);
-    for (size_t axis = 0; axis < 3; ++axis)
-      by[axis] = double(at_[axis][i * nodes + k]) - by[axis] - double(step(axis, i * nodes + k));
-    return by;
   }
 
   using Factors = decltype(Bend::factor);
@@ -153,7 +168,7 @@ class Nodes {
   /// Newton's formula: the differences of the nodes' movements times binomials of degree times the
   /// weights, here multiplied out.
   Bend bend_of(const Triangle& on, size_t i) const {
-    const Factors difference = differences(on, i);
+    const Factors difference = differences(i);
     const auto along = [](const Linear& a) {
       return Linear{degree * a.value, degree * a.by_x, degree * a.by_y};
     };
@@ -174,11 +189,11 @@ class Nodes {
     return {sum};
   }
 
-  Factors differences(const Triangle& on, size_t i) const {
+  Factors differences(size_t i) const {
     Factors a;
     for (size_t k = 0; k < nodes; ++k) {
-      const Node by = movement(on, i, k);
-      const float lanes[4] = {float(by[0]), float(by[1]), float(by[2]), 0};
+      const size_t at = i * nodes + k;
+      const float lanes[4] = {movement_[0][at], movement_[1][at], movement_[2][at], 0};
       a[size_t(places[k][0])][size_t(places[k][1])] = L::load(lanes);
     }
     for (size_t order = 1; order <= degree; ++order)
@@ -194,7 +209,9 @@ class Nodes {
   float tolerance_;
   size_t count_ = 0;
   std::array<uint32_t, most_triangles> triangle_;
-  std::array<Values, 3> at_, gradient_;
+  std::array<std::array<std::array<float, 3>, 3>, most_triangles> direction_;  // by corner
+  std::array<Values, 3> at_, movement_;
+  std::array<std::array<double, block_size>, 3> start_;
   Values value_;
 };
 
@@ -238,7 +255,7 @@ void find_bends(const Evaluator& solid, const TilePoints& points, float toleranc
   find_curved(solid, points, tolerance, curved);
   Nodes waiting(solid, tolerance);
   for (const uint32_t i : curved) {
-    waiting.add(i, points.triangles[i]);
+    waiting.add(i);
     if (waiting.is_full()) waiting.finish(points, bends);
   }
   waiting.finish(points, bends);

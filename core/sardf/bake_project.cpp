@@ -36,21 +36,21 @@ class BentPoints {
   /// Whole lanes are moved: what was behind the run is put back.
   void move(const TilePoints& points, const Bend& bend, const TexelRun& run, size_t first) {
     const Triangle& on = points.triangles[run.on];
-    const L counts(L::Values{0, 1, 2, 3});
     const std::array<L, Bend::degree + 1> factor = in_row(bend, run.y - on.y0);
-    for (size_t axis = 0; axis < 3; ++axis) {
-      const float* const from = &points.point[axis][run.first];
-      float* const to = &at[axis][run.first - first];
-      std::array<L, Bend::degree + 1> by;
-      for (size_t p = 0; p <= Bend::degree; ++p) by[p] = L(double(factor[p].v[axis]));
-      for (size_t i = 0; i < run.count; i += L::width) {
-        const L x = L(double(run.x - on.x0) + double(i)) + counts;
-        L sum = by[Bend::degree];
-        for (size_t p = Bend::degree; p-- > 0;) sum = sum * x + by[p];
-        (L::load(from + i) + sum).store(to + i);
-      }
-      L::load(from + run.count).store(to + run.count);
+    std::array<std::array<L, 3>, Bend::degree + 1> by;
+    for (size_t p = 0; p <= Bend::degree; ++p)
+      for (size_t axis = 0; axis < 3; ++axis) by[p][axis] = L(double(factor[p].v[axis]));
+    L x = L(double(run.x - on.x0)) + L(L::Values{0, 1, 2, 3});
+    const size_t to = run.first - first;
+    for (size_t i = 0; i < run.count; i += L::width, x = x + L(double(L::width))) {
+      std::array<L, 3> sum = by[Bend::degree];
+      for (size_t p = Bend::degree; p-- > 0;)
+        for (size_t axis = 0; axis < 3; ++axis) sum[axis] = sum[axis] * x + by[p][axis];
+      for (size_t axis = 0; axis < 3; ++axis)
+        (L::load(&points.point[axis][run.first + i]) + sum[axis]).store(&at[axis][to + i]);
     }
+    for (size_t axis = 0; axis < 3; ++axis)
+      L::load(&points.point[axis][run.first + run.count]).store(&at[axis][to + run.count]);
   }
 
   /// The factors of x^p in a row.

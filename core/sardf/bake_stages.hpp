@@ -86,8 +86,8 @@ struct Triangle {
 
 /// Points of a row on one triangle, side by side.
 struct TexelRun {
-  uint16_t first;      // of the points
-  uint8_t x, y;        // texel of the first point, from the tile's first on
+  uint16_t first;  // of the points
+  uint8_t x, y;    // texel of the first point, from the tile's first on
   uint8_t count;
   uint32_t on;  // of the triangles
 };
@@ -107,7 +107,7 @@ struct TilePoints {
   /// Points by coordinate; what is behind `count` has no meaning.
   std::array<std::array<float, tile_texels + tile_size>, 3> point;
   std::array<uint32_t, tile_texels + tile_size> on;  // of `surfaces`
-  std::vector<PointSurface> surfaces;  // of the triangles, then those beside the mesh
+  std::vector<PointSurface> surfaces;                // of the triangles, then those beside the mesh
   std::vector<Triangle> triangles;
   std::vector<TexelRun> runs;  // on triangles, in the points' order
 };
@@ -154,8 +154,8 @@ void for_blocks(const TilePoints& points, size_t most, Work work) {
 void find_texels(const UvLayout& layout, size_t tile, TilePoints& points,
                  TexelCorners* corners = nullptr);
 
-/// How points of a triangle are moved onto a curved surface: by polynomials in the texel coordinates
-/// from the triangle's (x0, y0) on, one for each axis (the fourth lane is unused).
+/// How points of a triangle are moved onto a curved surface: by polynomials in the texel
+/// coordinates from the triangle's (x0, y0) on, one for each axis (the fourth lane is unused).
 struct Bend {
   static constexpr int degree = 4;
   /// factor[p][q] is that of x^p y^q, 0 where p + q > degree.

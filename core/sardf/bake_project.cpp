@@ -9,6 +9,7 @@ namespace {
 
 constexpr size_t block_size = Evaluator::block_size;
 constexpr int steps = 3;
+constexpr int guided_steps = 2;
 /// Smallest squared cosine between the gradient and the face's normal: 45 degrees. Beyond, the
 /// nearest zero set is that of another face.
 constexpr float aligned = 0.5f;
@@ -20,13 +21,13 @@ using L = Lanes<Baseline>;
 class BentPoints {
  public:
   /// Of the points [first, first + n), with the runs of theirs.
-  void move(const TilePoints& points, const Bends& bends, std::span<const TexelRun> runs,
+  void move(const TilePoints& points, const Guides& guides, std::span<const TexelRun> runs,
             size_t first, size_t n) {
     for (size_t axis = 0; axis < 3; ++axis)
       std::copy_n(&points.point[axis][first], n, at[axis].begin());
     for (const TexelRun& run : runs) {
-      const uint32_t bend = bends.of[run.on];
-      if (bend != Bends::none) move(points, bends.bends[bend], run, first);
+      const uint32_t bend = guides.bend_of[run.on];
+      if (bend != Guides::none) move(points, guides.bends[bend], run, first);
     }
   }
 
@@ -74,7 +75,10 @@ class Movement {
       : solid_(solid), points_(points), tolerance_(tolerance) {}
 
   void run() {
-    find_distant();
+    thread_local Guides guides;
+    find_guides(solid_, points_, tolerance_, guides);
+    find_distant(guides);
+    step_with_triangles(guides);
     for (int step = 0; step < steps && count_ > 0; ++step) {
       size_t kept = 0;
       for (size_t first = 0; first < count_; first += block_size)
@@ -87,19 +91,18 @@ class Movement {
  private:
   /// Moves the points on bent triangles, and finds the points that are distant then: those go on
   /// from where they were.
-  void find_distant() {
-    thread_local Bends bends;
-    find_bends(solid_, points_, tolerance_, bends);
+  void find_distant(const Guides& guides) {
     auto run = points_.runs.begin();
     for_blocks(points_, block_size, [&](int first_row, int last_row) {
       const auto begin = run;
       while (run != points_.runs.end() && run->y < last_row) ++run;
       const size_t first = points_.start[size_t(first_row)];
       const size_t n = points_.start[size_t(last_row)] - first;
-      const bool bent = std::any_of(
-          begin, run, [&](const TexelRun& each) { return bends.of[each.on] != Bends::none; });
+      const bool bent = std::any_of(begin, run, [&](const TexelRun& each) {
+        return guides.bend_of[each.on] != Guides::none;
+      });
       if (bent)
-        find_distant_bent(bends, {begin, run}, first, n);
+        find_distant_bent(guides, {begin, run}, first, n);
       else
         find_distant(first, n);
     });
@@ -114,9 +117,9 @@ class Movement {
     for_distant(value, n, [&](size_t i) { append(first + i, value[i]); });
   }
 
-  void find_distant_bent(const Bends& bends, std::span<const TexelRun> runs, size_t first,
+  void find_distant_bent(const Guides& guides, std::span<const TexelRun> runs, size_t first,
                          size_t n) {
-    bent_.move(points_, bends, runs, first, n);
+    bent_.move(points_, guides, runs, first, n);
     Values value;
     evaluate(bent_.at[0].data(), bent_.at[1].data(), bent_.at[2].data(), n, value);
     for_distant(value, n, [&](size_t i) {
@@ -159,6 +162,72 @@ class Movement {
       if (!(std::abs(value[i]) <= tolerance_)) work(i);
   }
 
+  /// Moves points along the directions of their triangles. Those that do not get within the
+  /// tolerance so go on from where they were.
+  void step_with_triangles(const Guides& guides) {
+    size_t kept = 0;
+    for (size_t first = 0; first < count_; first += block_size)
+      kept = step_with_triangles(guides, first, std::min(block_size, count_ - first), kept);
+    count_ = kept;
+  }
+
+  /// The same of moving points [first, first + n). Those that go on are packed at `kept`; the new
+  /// `kept`.
+  size_t step_with_triangles(const Guides& guides, size_t first, size_t n, size_t kept) {
+    std::array<Values, 3> at, along;
+    Values value;
+    std::array<uint16_t, block_size> of;
+    size_t count = 0;
+    for (size_t k = first; k < first + n; ++k) {
+      const uint32_t on = points_.on[place_[k]];
+      const uint32_t directions =
+          on < guides.directions_of.size() ? guides.directions_of[on] : Guides::none;
+      if (directions == Guides::none) continue;
+      const std::array<float, 3> by =
+          guides.directions[directions].at({at_[0][k], at_[1][k], at_[2][k]});
+      for (size_t axis = 0; axis < 3; ++axis) {
+        at[axis][count] = at_[axis][k];
+        along[axis][count] = by[axis];
+      }
+      value[count] = value_[k];
+      of[count++] = static_cast<uint16_t>(k);
+    }
+    for (int step = 0; step < guided_steps && count > 0; ++step) {
+      for (size_t axis = 0; axis < 3; ++axis)
+        for (size_t i = 0; i < count; ++i) at[axis][i] -= value[i] * along[axis][i];
+      evaluate(at[0].data(), at[1].data(), at[2].data(), count, value);
+    }
+    std::array<bool, block_size> arrived{};
+    for (size_t i = 0; i < count; ++i) {
+      const size_t place = place_[of[i]];
+      const std::array<float, 3> to{at[0][i], at[1][i], at[2][i]};
+      if (!(std::abs(value[i]) <= tolerance_) || !is_within_limit(place, to)) continue;
+      for (size_t axis = 0; axis < 3; ++axis) points_.point[axis][place] = to[axis];
+      arrived[of[i] - first] = true;
+    }
+    for (size_t k = first; k < first + n; ++k)
+      if (!arrived[k - first]) keep(k, kept++);
+    return kept;
+  }
+
+  bool is_within_limit(size_t place, const std::array<float, 3>& to) const {
+    float moved = 0;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const float d = to[axis] - points_.point[axis][place];
+      moved += d * d;
+    }
+    const float limit = points_.surfaces[points_.on[place]].limit;
+    return moved <= limit * limit;
+  }
+
+  /// Packs moving point k at `to`.
+  void keep(size_t k, size_t to) {
+    place_[to] = place_[k];
+    start_[to] = start_[k];
+    value_[to] = value_[k];
+    for (size_t axis = 0; axis < 3; ++axis) at_[axis][to] = at_[axis][k];
+  }
+
   void append(size_t place, float value) {
     // A NaN stays where it is, as does a point that may not be moved at all.
     if (std::isnan(value) || points_.surfaces[points_.on[place]].limit == 0) return;
@@ -196,11 +265,7 @@ class Movement {
         settle(k);
         continue;
       }
-      place_[going] = place_[k];
-      start_[going] = start_[k];
-      value_[going] = value_[k];
-      for (size_t axis = 0; axis < 3; ++axis) at_[axis][going] = at_[axis][k];
-      ++going;
+      keep(k, going++);
     }
     return going;
   }
@@ -217,13 +282,8 @@ class Movement {
     }
     if (!(cosine * cosine >= aligned * squared) || !(squared > 0)) return Step::none;
     const float scale = value_[k] / squared;
-    float moved = 0;
-    for (size_t axis = 0; axis < 3; ++axis) {
-      gradient[axis] = at_[axis][k] - scale * gradient[axis];
-      const float d = gradient[axis] - points_.point[axis][p];
-      moved += d * d;
-    }
-    return moved <= on.limit * on.limit ? Step::taken : Step::too_far;
+    for (size_t axis = 0; axis < 3; ++axis) gradient[axis] = at_[axis][k] - scale * gradient[axis];
+    return is_within_limit(p, gradient) ? Step::taken : Step::too_far;
   }
 
   /// A point stays where it came unless it was nearer before.

@@ -162,17 +162,38 @@ struct Bend {
   std::array<std::array<Lanes<Baseline>, degree + 1>, degree + 1> factor;
 };
 
-/// The bends of a tile's triangles.
-struct Bends {
-  static constexpr uint32_t none = UINT32_MAX;
-  std::vector<uint32_t> of;  // for each triangle one of `bends`, or none
-  std::vector<Bend> bends;
+/// Along what the points of a curved triangle get onto the surface: gradient / |gradient|² of the
+/// field, linear between the corners. A step of minus the field's value times that is Newton's.
+struct Directions {
+  std::array<float, 3> origin, to_b, to_c;  // the weights of a point from its place
+  std::array<std::array<float, 3>, 3> corner;
+
+  std::array<float, 3> at(const std::array<float, 3>& point) const {
+    float b = 0, c = 0;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      b += (point[axis] - origin[axis]) * to_b[axis];
+      c += (point[axis] - origin[axis]) * to_c[axis];
+    }
+    std::array<float, 3> result;
+    for (size_t axis = 0; axis < 3; ++axis)
+      result[axis] = (1 - b - c) * corner[0][axis] + b * corner[1][axis] + c * corner[2][axis];
+    return result;
+  }
 };
 
-/// Finds bends of the triangles whose points they move onto the zero set of `solid`, most of them
-/// to within `tolerance`, by at most the triangle's limit. Triangles with few texels have none, nor
-/// have those that lie on the zero set already.
-void find_bends(const Evaluator& solid, const TilePoints& points, float tolerance, Bends& bends);
+/// How the points of a tile's curved triangles are moved together.
+struct Guides {
+  static constexpr uint32_t none = UINT32_MAX;
+  std::vector<uint32_t> bend_of, directions_of;  // for each triangle one of those below, or none
+  std::vector<Bend> bends;
+  std::vector<Directions> directions;
+};
+
+/// Finds guides of the triangles that do not lie within `tolerance` of the zero set of `solid`
+/// already, with enough texels: directions where gradients are within 30 degrees of the triangle's
+/// normal, and bends where those move nearly all points to within the tolerance, by at most the
+/// triangle's limit.
+void find_guides(const Evaluator& solid, const TilePoints& points, float tolerance, Guides& guides);
 
 /// Moves the points that are farther than `tolerance`, by the field, onto the zero set of `solid`.
 void project(const Evaluator& solid, TilePoints& points, float tolerance);

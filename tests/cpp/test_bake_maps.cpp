@@ -159,6 +159,47 @@ TEST(BakeMap, PointsOfThinFacesLieOnThem) {
   EXPECT_GT(on_face, 100u);
 }
 
+/// Whether a point lies in a triangle, whichever way round its corners are.
+bool lies_in(const std::array<Vec2, 3>& corner, const Vec2& p) {
+  int left = 0;
+  for (size_t k = 0; k < 3; ++k) {
+    const Vec2 &a = corner[k], &b = corner[(k + 1) % 3];
+    left += (b[0] - a[0]) * (p[1] - a[1]) > (b[1] - a[1]) * (p[0] - a[0]);
+  }
+  return left == 0 || left == 3;
+}
+
+TEST(BakeMap, OfFacesThatOverlapTheFirstIsSeen) {
+  constexpr int size = 64;
+  std::mt19937_64 random(43);
+  std::uniform_real_distribution<double> any(0, 1);
+  for (int i = 0; i < 200; ++i) {
+    // Each at its own height.
+    Mesh mesh;
+    for (uint32_t f = 0; f < 6; ++f) {
+      for (int k = 0; k < 3; ++k) mesh.vertices.push_back({any(random), any(random), double(f)});
+      mesh.faces.push_back({3 * f, 3 * f + 1, 3 * f + 2, 3 * f + 2});
+      for (const uint32_t v : mesh.faces.back())
+        mesh.corner_uv.push_back({mesh.vertices[v][0], mesh.vertices[v][1]});
+    }
+    std::vector<float> expected(size * size, -1);
+    for (size_t f = 6; f-- > 0;)
+      for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x)
+          if (lies_in({mesh.corner_uv[4 * f], mesh.corner_uv[4 * f + 1], mesh.corner_uv[4 * f + 2]},
+                      {(x + 0.5) / size, 1 - (y + 0.5) / size}))
+            expected[size_t(y) * size + size_t(x)] = float(f);
+    baking::TilePoints points;
+    const TexelMap map(mesh, size, 0);
+    baking::find_texels(map.layout(), 0, points);
+    std::vector<float> found(size * size, -1);
+    for (const baking::TexelRun& run : points.runs)
+      for (size_t k = 0; k < run.count; ++k)
+        found[size_t(run.y) * size + run.x + k] = points.point[2][run.first + k];
+    ASSERT_EQ(found, expected);
+  }
+}
+
 TEST(BakeMap, SaysWhatIsWrong) {
   const Mesh cube = unwrapped_cube(0.2);
   Mesh bad = cube;

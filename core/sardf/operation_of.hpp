@@ -34,6 +34,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstring>
 #include <utility>
 
 #include "sardf/error.hpp"
@@ -77,7 +78,6 @@ template <class Op>
 class OperationOf final : public Operation {
  public:
   static constexpr int arity = Op::arity;
-  using Dual = Gradient<double, arity>;
   using DualInterval = Gradient<Interval, arity>;
 
   explicit OperationOf(Op op) : op_(std::move(op)) {
@@ -129,13 +129,11 @@ class OperationOf final : public Operation {
 
   void partials(const double* const* in, double* out, double* const* partial,
                 size_t n) const override {
-    for (size_t i = 0; i < n; ++i) {
-      std::array<Dual, arity> at;
-      for (int k = 0; k < arity; ++k) at[k] = Dual::variable(in[k][i], k);
-      const Dual result = apply(op_, at.data());
-      out[i] = result.v;
-      for (int k = 0; k < arity; ++k) partial[k][i] = result.d[k];
-    }
+    using L = Lanes<TwoDoubles>;
+    const typename KernelsOf<Op, TwoDoubles>::Own op = op_;
+    size_t i = 0;
+    for (; i + L::width <= n; i += L::width) partials_from<L>(op, i, in, out, partial);
+    for (; i < n; ++i) partials_from<double>(op, i, in, out, partial);
   }
 
   Interval interval(const Interval* in) const override {
@@ -245,6 +243,22 @@ class OperationOf final : public Operation {
   }
 
  private:
+  /// Value and partials of the points i, i + 1, ... that T holds.
+  template <class T>
+  static void partials_from(const Op& op, size_t i, const double* const* in, double* out,
+                            double* const* partial) {
+    using Dual = Gradient<T, arity>;
+    std::array<Dual, arity> at;
+    for (int k = 0; k < arity; ++k) {
+      T value;
+      std::memcpy(&value, in[k] + i, sizeof value);
+      at[k] = Dual::variable(value, k);
+    }
+    const Dual result = apply(op, at.data());
+    std::memcpy(out + i, &result.v, sizeof result.v);
+    for (int k = 0; k < arity; ++k) std::memcpy(partial[k] + i, &result.d[k], sizeof result.d[k]);
+  }
+
   static double times(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
 
   static constexpr bool has_top = requires(const Op& op) { op.top(); };

@@ -110,27 +110,41 @@ TEST(BatchLaws, KernelsEqualScalars) {
   });
 }
 
-bool same(float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 // Blocks of doubles are computed two at a time, with the bits of one at a time.
 TEST(BatchLaws, BlocksOfDoublesEqualPoints) {
   laws::for_operations(laws::effort(60), [](auto, const Operation& op, Random& r) {
     constexpr size_t odd = points - 1;
-    std::vector<std::vector<double>> at;
-    std::vector<std::vector<double>> inputs(size_t(op.info().arity), std::vector<double>(odd));
-    std::array<const double*, max_arity> in{};
+    const size_t arity = size_t(op.info().arity);
+    std::vector<std::vector<double>> inputs(arity, std::vector<double>(odd)), partial = inputs;
     for (size_t i = 0; i < odd; ++i) {
-      at.push_back(r.values(op.info().arity, 0.1, 1e12));
-      for (size_t k = 0; k < inputs.size(); ++k) inputs[k][i] = at[i][k];
+      const std::vector<double> at = r.values(op.info().arity, 0.1, 1e12);
+      for (size_t k = 0; k < arity; ++k) inputs[k][i] = at[k];
     }
-    for (size_t k = 0; k < inputs.size(); ++k) in[k] = inputs[k].data();
-    std::vector<double> block(odd);
+    std::array<const double*, max_arity> in{};
+    std::array<double*, max_arity> by{};
+    for (size_t k = 0; k < arity; ++k) {
+      in[k] = inputs[k].data();
+      by[k] = partial[k].data();
+    }
+    std::vector<double> block(odd), with_partials(odd);
     op.evaluate(in.data(), block.data(), odd);
+    op.partials(in.data(), with_partials.data(), by.data(), odd);
     for (size_t i = 0; i < odd; ++i) {
-      const double one = op.evaluate(at[i].data());
-      EXPECT_TRUE(block[i] == one || (std::isnan(block[i]) && std::isnan(one)))
-          << block[i] << " and " << one << " at " << testing::PrintToString(at[i])
-          << ", parameters " << testing::PrintToString(op.numbers());
+      std::vector<double> at;
+      for (const std::vector<double>& input : inputs) at.push_back(input[i]);
+      const double one = op.evaluate(at.data());
+      EXPECT_TRUE(same(block[i], one) && same(with_partials[i], one))
+          << block[i] << ", " << with_partials[i] << " and " << one << " at "
+          << testing::PrintToString(at) << ", parameters " << testing::PrintToString(op.numbers());
+      const std::vector<double> partial_of_one = laws::partials_at(op, at);
+      for (size_t k = 0; k < arity; ++k) {
+        EXPECT_TRUE(same(partial[k][i], partial_of_one[k]))
+            << "partial " << k << ": " << partial[k][i] << " and " << partial_of_one[k] << " at "
+            << testing::PrintToString(at) << ", parameters "
+            << testing::PrintToString(op.numbers());
+      }
     }
   });
 }

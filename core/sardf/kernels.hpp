@@ -5,8 +5,8 @@
 // file.
 //
 // All sets give the same bits, 0 ulp apart (which of the NaNs a NaN is aside): every step is
-// rounded by IEEE 754, contraction is off, and elementary functions are the C library's scalar
-// ones.
+// rounded by IEEE 754, contraction is off, and elementary functions are such steps or the C
+// library's scalar functions.
 #pragma once
 
 #include <array>

@@ -154,7 +154,7 @@ inline Choice sqrt(const Choice& a) {
   return Choice::rounded_from_zero(sqrt(a.range), a.may_be_nan || a.range.lo < 0);
 }
 
-/// The C library's functions for floats are right within two units in the last place.
+/// Functions of floats, ours and the C library's, are right within two units in the last place.
 inline constexpr double float_library_ulps = 2;
 
 inline Choice exp(const Choice& a) {

@@ -13,7 +13,9 @@
 #endif
 
 #include "sardf/numbers/exponentials.hpp"
+#include "sardf/numbers/powers.hpp"
 #include "sardf/numbers/real.hpp"
+#include "sardf/numbers/sines.hpp"
 
 namespace sardf {
 
@@ -146,28 +148,46 @@ struct Lanes {
   }
 
   friend Lanes min(Lanes a, Lanes b) {
+    constexpr size_t bytes = sizeof(Values);
+    constexpr bool floats = std::is_same_v<Number, float>;
 #if defined(__AVX512F__)
-    if constexpr (width == 16) return Lanes((Values)_mm512_min_ps((__m512)a.v, (__m512)b.v));
+    if constexpr (bytes == 64 && floats)
+      return Lanes((Values)_mm512_min_ps((__m512)a.v, (__m512)b.v));
+    if constexpr (bytes == 64 && !floats)
+      return Lanes((Values)_mm512_min_pd((__m512d)a.v, (__m512d)b.v));
 #endif
 #if defined(__AVX__)
-    if constexpr (width == 8) return Lanes((Values)_mm256_min_ps((__m256)a.v, (__m256)b.v));
+    if constexpr (bytes == 32 && floats)
+      return Lanes((Values)_mm256_min_ps((__m256)a.v, (__m256)b.v));
+    if constexpr (bytes == 32 && !floats)
+      return Lanes((Values)_mm256_min_pd((__m256d)a.v, (__m256d)b.v));
 #endif
 #if defined(__SSE2__)
-    if constexpr (width == 4) return Lanes((Values)_mm_min_ps((__m128)a.v, (__m128)b.v));
-    if constexpr (width == 2) return Lanes((Values)_mm_min_pd((__m128d)a.v, (__m128d)b.v));
+    if constexpr (bytes == 16 && floats) return Lanes((Values)_mm_min_ps((__m128)a.v, (__m128)b.v));
+    if constexpr (bytes == 16 && !floats)
+      return Lanes((Values)_mm_min_pd((__m128d)a.v, (__m128d)b.v));
 #endif
     return select(a < b, a, b);
   }
   friend Lanes max(Lanes a, Lanes b) {
+    constexpr size_t bytes = sizeof(Values);
+    constexpr bool floats = std::is_same_v<Number, float>;
 #if defined(__AVX512F__)
-    if constexpr (width == 16) return Lanes((Values)_mm512_max_ps((__m512)a.v, (__m512)b.v));
+    if constexpr (bytes == 64 && floats)
+      return Lanes((Values)_mm512_max_ps((__m512)a.v, (__m512)b.v));
+    if constexpr (bytes == 64 && !floats)
+      return Lanes((Values)_mm512_max_pd((__m512d)a.v, (__m512d)b.v));
 #endif
 #if defined(__AVX__)
-    if constexpr (width == 8) return Lanes((Values)_mm256_max_ps((__m256)a.v, (__m256)b.v));
+    if constexpr (bytes == 32 && floats)
+      return Lanes((Values)_mm256_max_ps((__m256)a.v, (__m256)b.v));
+    if constexpr (bytes == 32 && !floats)
+      return Lanes((Values)_mm256_max_pd((__m256d)a.v, (__m256d)b.v));
 #endif
 #if defined(__SSE2__)
-    if constexpr (width == 4) return Lanes((Values)_mm_max_ps((__m128)a.v, (__m128)b.v));
-    if constexpr (width == 2) return Lanes((Values)_mm_max_pd((__m128d)a.v, (__m128d)b.v));
+    if constexpr (bytes == 16 && floats) return Lanes((Values)_mm_max_ps((__m128)a.v, (__m128)b.v));
+    if constexpr (bytes == 16 && !floats)
+      return Lanes((Values)_mm_max_pd((__m128d)a.v, (__m128d)b.v));
 #endif
     return select(a > b, a, b);
   }
@@ -209,13 +229,19 @@ struct Lanes {
     if constexpr (std::is_same_v<Number, float>) return log_of_floats(a);
     return each(a, [](Number s) { return std::log(s); });
   }
-  // The C library's scalar functions: the same result for every instruction set.
   friend Lanes sin(Lanes a) {
+    if constexpr (std::is_same_v<Number, float>) return sin_of_floats(a);
     return each(a, [](Number s) { return std::sin(s); });
   }
   friend Lanes cos(Lanes a) {
+    if constexpr (std::is_same_v<Number, float>) return cos_of_floats(a);
     return each(a, [](Number s) { return std::cos(s); });
   }
+  friend Lanes pow(Lanes a, Lanes b) {
+    if constexpr (std::is_same_v<Number, float>) return pow_of_floats(a, b);
+    return each(a, b, [](Number s, Number t) { return std::pow(s, t); });
+  }
+  // The C library's scalar functions: the same result for every instruction set.
   friend Lanes tan(Lanes a) {
     return each(a, [](Number s) { return std::tan(s); });
   }
@@ -227,9 +253,6 @@ struct Lanes {
   }
   friend Lanes atan2(Lanes a, Lanes b) {
     return each(a, b, [](Number s, Number t) { return std::atan2(s, t); });
-  }
-  friend Lanes pow(Lanes a, Lanes b) {
-    return each(a, b, [](Number s, Number t) { return std::pow(s, t); });
   }
 };
 

@@ -1,7 +1,7 @@
 // Powers of several floats at once: a^b = 2^(b log2 a).
 //
 // Computed in double, in one order and never fused, so every instruction set gives the same bits.
-// The polynomials were found by Remez's algorithm. Where a is not a positive normal number, or b is
+// The polynomials were found by Remez's algorithm. Where a is -0, denormal or not finite, or b is
 // not finite, the C library's function is called for each.
 #pragma once
 
@@ -47,10 +47,9 @@ H two_to(H a) {
   return power_of_rest * H((typename H::Values)exponent);
 }
 
-}  // namespace powers
-
+/// a^b for a > 0, a normal number.
 template <class Isa>
-Lanes<Isa> pow_of_floats(Lanes<Isa> a, Lanes<Isa> b) {
+Lanes<Isa> power_of_positive(Lanes<Isa> a, Lanes<Isa> b) {
   using L = Lanes<Isa>;
   using Ints = typename L::Ints;
   using Values = typename L::Values;
@@ -60,12 +59,38 @@ Lanes<Isa> pow_of_floats(Lanes<Isa> a, Lanes<Isa> b) {
   const L m = L((Values)(bits - (whole << exponentials::exponent_shift)));
   const L n = L(__builtin_convertvector(whole, Values));
   const auto power = [](auto factor, auto exponent, auto by) {
-    return powers::two_to(by * (exponent + powers::log2_near_one(factor)));
+    return two_to(by * (exponent + log2_near_one(factor)));
   };
-  const L most = double(std::numeric_limits<float>::max());
-  const auto is_ordinary = a >= L(0x1p-126) && a <= most && abs(b) <= most;
-  return shortcut(is_ordinary, in_double<Isa>(power, m, n, b),
-                  [&] { return L::each(a, b, [](float s, float t) { return std::pow(s, t); }); });
+  return in_double<Isa>(power, m, n, b);
+}
+
+/// a^b from |a|^b: NaN for a negative a and a broken b.
+template <class L>
+L with_sign(L power, L a, L b) {
+  const L half = L(0.5) * b;
+  const auto is_even = floor(half) >= half, is_whole = floor(b) >= b;
+  const L broken(std::numeric_limits<double>::quiet_NaN());
+  return select(a < L(0.0), select(is_whole, select(is_even, power, -power), broken), power);
+}
+
+}  // namespace powers
+
+template <class Isa>
+Lanes<Isa> pow_of_floats(Lanes<Isa> a, Lanes<Isa> b) {
+  using L = Lanes<Isa>;
+  const L size = abs(a), least(0x1p-126), most = double(std::numeric_limits<float>::max());
+  const L power = powers::power_of_positive(size, b);
+  const auto is_ordinary = a >= least && a <= most && abs(b) <= most;
+  return shortcut(is_ordinary, power, [&] {
+    constexpr double inf = std::numeric_limits<double>::infinity();
+    const auto is_zero = size <= L(0.0);
+    const L of_zero = select(b > L(0.0), L(0.0), select(b < L(0.0), L(inf), L(1.0)));
+    const L result = powers::with_sign(select(is_zero, of_zero, power), a, b);
+    // The sign of a power of -0 is left to the C library.
+    const auto is_known = size >= least || (is_zero && L(1.0) / a > L(0.0));
+    return shortcut(is_known && size <= most && abs(b) <= most, result,
+                    [&] { return L::each(a, b, [](float s, float t) { return std::pow(s, t); }); });
+  });
 }
 
 }  // namespace sardf

@@ -24,7 +24,7 @@ inline constexpr double largest_ulps_of_sin = 0.501, largest_ulps_of_cos = 0.501
 namespace sines {
 
 inline constexpr double one_over_pi = 0x1.45f306dc9c883p-2;
-// n times the first is exact below 2^22; both together are π within 2^-87.
+// n times the first is exact below 2^22; both together are π within 2^-86.
 inline constexpr double pi_high = 0x1.921fb544p+1, pi_low = 0x1.0b4611a626331p-33;
 // Adding it rounds to a whole number, which the sum's lowest bits hold.
 inline constexpr double rounder = 0x1.8p52;

@@ -76,9 +76,10 @@ using BakeConsumer =
 /// Bakes the channels and hands their images over one by one, in order. No image holds NaN or
 /// infinities.
 ///
-/// Each point is moved along the gradient of `solid` onto its zero set first, by at most half an
-/// edge of its face and only along a gradient within 45 degrees of the face's normal; points beyond
-/// a crease (mesh.creases) stay where the linear continuation puts them. Null: no point is moved.
+/// Each point is moved along the gradient of `solid`, its own or mixed from those at its triangle's
+/// corners, onto the zero set first, by at most half an edge of its face and only along a gradient
+/// within 45 degrees of the face's normal; points beyond a crease (mesh.creases) stay where the
+/// linear continuation puts them. Null: no point is moved.
 ///
 /// As many channels are baked together (and share their common parts) as have images of at most
 /// `memory` bytes together, at least one; each time again, points are found anew. Runs on all

@@ -1,4 +1,6 @@
-// Moving points that are almost on a solid's surface onto it.
+// Moving points that are almost on a solid's surface onto it: with their triangle's other points,
+// by steps along its directions, at last by Newton's steps of their own. A way counts only where
+// the field's value at its end is within the tolerance; else the point begins anew.
 
 #include <cmath>
 
@@ -8,8 +10,8 @@ namespace sardf::baking {
 namespace {
 
 constexpr size_t block_size = Evaluator::block_size;
-constexpr int steps = 3;
-constexpr int guided_steps = 2;
+constexpr int steps = 3;         // along a point's own gradients
+constexpr int guided_steps = 2;  // along the directions of its triangle
 /// Smallest squared cosine between the gradient and the face's normal: 45 degrees. Beyond, the
 /// nearest zero set is that of another face.
 constexpr float aligned = 0.5f;

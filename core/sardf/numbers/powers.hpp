@@ -64,13 +64,19 @@ Lanes<Isa> power_of_positive(Lanes<Isa> a, Lanes<Isa> b) {
   return in_double<Isa>(power, m, n, b);
 }
 
+template <class L>
+auto is_whole(L a) {
+  // Floats from 2^23 on are whole; adding it rounds smaller ones. A floor costs the baseline calls.
+  const L size = abs(a), rounded = (size + L(0x1p23)) - L(0x1p23);
+  return size >= L(0x1p23) || (rounded <= size && rounded >= size);
+}
+
 /// a^b from |a|^b: NaN for a negative a and a broken b.
 template <class L>
 L with_sign(L power, L a, L b) {
-  const L half = L(0.5) * b;
-  const auto is_even = floor(half) >= half, is_whole = floor(b) >= b;
   const L broken(std::numeric_limits<double>::quiet_NaN());
-  return select(a < L(0.0), select(is_whole, select(is_even, power, -power), broken), power);
+  const L signed_power = select(is_whole(L(0.5) * b), power, -power);
+  return select(a < L(0.0), select(is_whole(b), signed_power, broken), power);
 }
 
 }  // namespace powers

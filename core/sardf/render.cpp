@@ -82,6 +82,7 @@ bool set_frame(Subject& subject, const RenderOptions& options) {
   const double slope = subject.slopes.largest();
   const double misplaced = misplacement(subject.rays, bounds, options);
   const double error = subject.error_single;
+  if (!is_single(subject.solid)) return false;
   const Stretch depths = subject.rays.depths(bounds);
   const double range = depths.end - depths.begin;
   if (!(error < most_single_error * bounds.diagonal()) || !(range > 0)) return false;

@@ -32,6 +32,12 @@ Slope with_error(const Operation& operation, const Slope* in) {
 
 }  // namespace
 
+bool is_single(const Evaluator& evaluator) {
+  const auto& instructions = evaluator.tape().instructions();
+  return std::all_of(instructions.begin(), instructions.end(),
+                     [](const Instruction& i) { return i.operation->has_formula(); });
+}
+
 double single_precision_error(const Evaluator& evaluator, const BoundingBox& box) {
   if (!(box.diagonal() > smallest_size)) return infinity;
   const Tape& tape = evaluator.tape();

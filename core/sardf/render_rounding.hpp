@@ -5,6 +5,9 @@
 
 namespace sardf::rendering {
 
+/// Whether all of it is computed in single precision: what has no formula is in double in any case.
+bool is_single(const Evaluator& evaluator);
+
 /// Bounds |value in single precision - value in double| of the first output at points of the box
 /// whose coordinates are rounded to single precision. Infinite where nothing is known.
 double single_precision_error(const Evaluator& evaluator, const BoundingBox& box);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "sardf/render_rounding.hpp"
+
 namespace sardf::rendering {
 
 namespace {
@@ -183,11 +185,9 @@ void find_normals(const Subject& subject, std::span<Hit> hits, Watch& watch) {
   }
 }
 
-// What has no formula is evaluated in double in any case: twice would be a waste.
 bool single_does(const BoundingBox& box, const Evaluator& color) {
-  for (const Instruction& i : color.tape().instructions()) {
-    if (!i.operation->has_formula()) return false;
-  }
+  // Twice in double would be a waste.
+  if (!is_single(color)) return false;
   return norm(box.lo) + norm(box.hi) < far * box.diagonal();
 }
 

@@ -5,9 +5,9 @@ the pictures agree.
 
 POV-Ray draws the text that `sardf povray` writes, whose pieces and bounds sardf has found, and a
 plain translation of the scene: one isosurface in its box, with the smallest max_gradient that, by
-trial in a small picture, misses nothing. All run on one thread, and what counts is processor time:
-other work on the machine changes it little. Reading the scene is left out on all sides. Needs
-POV-Ray 3.7 and the package sardf.
+trial in a small picture, misses nothing; this one is white, so that colours cost it nothing. All
+run on one thread, and what counts is processor time: other work on the machine changes it little.
+Reading the scene is left out on all sides. Needs POV-Ray 3.7 and the package sardf.
 """
 
 import argparse
@@ -80,7 +80,7 @@ def main():
     parser.add_argument("--size", default="320x240", help="WIDTHxHEIGHT")
     options = parser.parse_args()
     width, height = map(int, options.size.split("x"))
-    print("                    sardf   POV-Ray, ours    POV-Ray, plain")
+    print("                    sardf   POV-Ray, ours    plain and white")
     print("scene                px/s     px/s   ratio     px/s   ratio      IoU  apart > 2  most")
     for scene in map(Path, options.scenes):
         with tempfile.TemporaryDirectory() as name:

@@ -69,7 +69,7 @@ struct Tile {
   int x, y, edge;
 };
 
-/// The beams of a tile that are not proven to show nothing; smallest_edge pixels wide.
+/// The rays of a square of pixels, as far as they go on together.
 struct Beam {
   double x, y, edge;  // the middle and the side, in pixels
   double clear;       // nothing of the solid lies before this depth
@@ -78,6 +78,7 @@ struct Beam {
   bool done = false;
 };
 inline constexpr int smallest_edge = RaySquare::edge;
+/// The beams of a tile that are not proven to show nothing; smallest_edge pixels wide.
 std::vector<Beam> find_beams(const Subject& subject, const Tile& tile, Watch& watch);
 
 /// Replaces the table's rays by those of the beams' pixels. The picture's edge cuts beams.

@@ -25,25 +25,35 @@ suite() {
 }
 
 # both_halves PROGRAM ARGUMENT...: a googletest program as two processes, one for each core, with
-# half of the tests each; reports, if asked for by REPORTS=1, are build/logs/googletest_{0,1}.xml.
+# half of the tests each, for LIMIT seconds at most; reports, if asked for by REPORTS=1, are
+# build/logs/googletest_{0,1}.xml.
 both_halves() {
   local half status=0 running=()
   for half in 0 1; do
     GTEST_TOTAL_SHARDS=2 GTEST_SHARD_INDEX=$half \
-      GTEST_OUTPUT=${REPORTS:+xml:$logs/googletest_$half.xml} "$@" &
+      GTEST_OUTPUT=${REPORTS:+xml:$logs/googletest_$half.xml} \
+      timeout --kill-after=60 "${LIMIT:-1800}" "$@" &
     running+=($!)
   done
   for half in "${running[@]}"; do wait "$half" || status=1; done
   return $status
 }
 
+# limited_pytest SECONDS ARGUMENT...: then it is interrupted, so that it prints what it knows, and
+# killed a minute later.
+limited_pytest() {
+  local limit=$1
+  shift
+  timeout --signal=INT --kill-after=60 "$limit" .venv/bin/python -m pytest "$@"
+}
+
 # The Python tests: files of them on both cores, then those that measure seconds. Reports are
 # build/logs/pytest_{0,1}.xml.
 all_pytest() {
   local status=0
-  .venv/bin/python -m pytest -m "not long and not timed" -n 2 --dist loadfile \
+  limited_pytest 2400 -m "not long and not timed" -n 2 --dist loadfile \
     --junitxml="$logs/pytest_0.xml" || status=1
-  .venv/bin/python -m pytest -m "timed and not long" --junitxml="$logs/pytest_1.xml" || status=1
+  limited_pytest 900 -m "timed and not long" --junitxml="$logs/pytest_1.xml" || status=1
   return $status
 }
 

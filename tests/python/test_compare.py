@@ -44,7 +44,7 @@ def missed(verdict):
 
 @pytest.mark.parametrize("blender", range(len(BLENDERS)))
 @pytest.mark.parametrize("scene", sorted(set(SCENES) - set(STEEP)))
-@pytest.mark.timeout(1800)
+@pytest.mark.timeout(900)
 def test_pictures_agree(numbers, scene, blender):
     assert not missed(list(numbers[scene].values())[blender])
 

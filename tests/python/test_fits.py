@@ -16,7 +16,7 @@ import sardf
 SARDF = Path(sys.executable).with_name("sardf")
 # A problem that was solved is not solved again: each test takes another weight.
 WEIGHTS = itertools.count(1)
-# A fit in space of this many splines takes about a second.
+# A fit in space of this many splines takes some seconds.
 SPLINES = 24
 
 
@@ -118,7 +118,7 @@ def test_ctrl_c_stops_a_fit_at_once(tmp_path, way, reports):
         sent.append(time.perf_counter())
         os.kill(os.getpid(), signal.SIGINT)
 
-    thread = threading.Thread(target=interrupt)
+    thread = threading.Thread(target=interrupt, daemon=True)
     thread.start()
     make = makers(tmp_path)[way]
     started.set()
@@ -152,7 +152,7 @@ def test_other_threads_run_while_a_fit_is_solved(tmp_path, way):
         while not done.wait(0.005):
             ticks.append(time.perf_counter())
 
-    thread = threading.Thread(target=tick)
+    thread = threading.Thread(target=tick, daemon=True)
     thread.start()
     begun = time.perf_counter()
     makers(tmp_path)[way]()

@@ -194,19 +194,22 @@ def test_progress_and_cancel(tmp_path):
     shares = []
     picture(tmp_path, world={"color": [1, 1, 1]}, width=320, height=320, progress=shares.append)
     assert shares == sorted(shares)
-    assert shares[-1] <= 1
-    assert len({share for share in shares if share > 0.2}) >= 2
-    said_no = []
+    assert shares[-1] == 1
+    risen, said_no = [], []
 
     def stop(share):
-        if share > 0.2:
-            said_no.append(time.monotonic())
-            return False
-        return True
+        risen.append(share)
+        # However fast the machine is, the large picture is seen to get on before it is stopped.
+        if len({share for share in risen if share > 0.2}) < 2:
+            return True
+        said_no.append(time.monotonic())
+        return False
 
     with pytest.raises(sardf.Cancelled):
         picture(tmp_path, look="flat", width=4000, height=4000, progress=stop)
     assert time.monotonic() - said_no[0] < 0.2
+    assert risen == sorted(risen)
+    assert risen[-1] < 1
     assert not [path for path in tmp_path.iterdir() if path.name.startswith(".")]
 
 

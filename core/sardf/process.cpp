@@ -45,11 +45,22 @@ class Descriptor {
   int number_ = -1;
 };
 
+// Both ends close when a program is started; on Linux also when another thread starts one at this
+// very moment, which would hold them open for as long as it runs.
+bool open_pipe(int* ends) {
+#if defined(__linux__)
+  return ::pipe2(ends, O_CLOEXEC) == 0;
+#else
+  if (::pipe(ends) != 0) return false;
+  for (int i = 0; i < 2; ++i) ::fcntl(ends[i], F_SETFD, FD_CLOEXEC);
+  return true;
+#endif
+}
+
 struct Pipe {
   Pipe() {
     int ends[2];
-    if (::pipe(ends) != 0) throw Failure(std::string("no pipe: ") + std::strerror(errno));
-    for (int end : ends) ::fcntl(end, F_SETFD, FD_CLOEXEC);
+    if (!open_pipe(ends)) throw Failure(std::string("no pipe: ") + std::strerror(errno));
     read.set(ends[0]);
     write.set(ends[1]);
   }

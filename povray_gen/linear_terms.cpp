@@ -92,6 +92,7 @@ int operators_of(const Linear& linear) {
 
 std::pair<Terms, int> with_short_linear_terms(const Terms& terms, int root) {
   Terms out;
+  for (int axis = 0; axis < 3; ++axis) out.input(axis);
   std::vector<std::optional<Linear>> linear(size_t(root) + 1);
   std::vector<int> made(size_t(root) + 1);
   for (int i = 0; i <= root; ++i) {

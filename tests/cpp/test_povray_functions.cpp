@@ -101,6 +101,16 @@ Expression nested_levels(int levels) {
   return f;
 }
 
+// A section may leave a piece of which only the cutting plane is near.
+TEST(PovrayFunctions, WriteCoordinatesAloneWhereTextIsToBeQuick) {
+  Names names("test");
+  FunctionWriter writer(names);
+  EXPECT_EQ(writer.quick("near", X), "x");
+  EXPECT_EQ(writer.quick("near", Y), "y");
+  EXPECT_EQ(writer.quick("near", Z), "z");
+  EXPECT_EQ(writer.text(), "");
+}
+
 TEST(PovrayFunctions, NameFunctionsAfterTheSceneAndAvoidReservedWords) {
   const Written text =
       written({{"box", sphere_at(1)}, {"box", sphere_at(2)}, {"t", X}, {"größe 1", Y}, {"7", Z}},

@@ -67,6 +67,19 @@ TEST_F(LinearTerms, ThatAreShortStayInEveryBit) {
   }
 }
 
+// Printers name the inputs x, y and z by their places.
+TEST_F(LinearTerms, HaveAllInputsBeforeThem) {
+  for (const int root : {x_, y_, z_}) {
+    const auto [shorter, end] = with_short_linear_terms(terms_, root);
+    EXPECT_EQ(end, root);
+    ASSERT_EQ(shorter.size(), 3);
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_EQ(shorter[axis].kind, Term::Kind::input);
+      EXPECT_EQ(shorter[axis].index, axis);
+    }
+  }
+}
+
 TEST_F(LinearTerms, AreThoseOfRandomFormulas) {
   std::mt19937 random(1);
   const auto below = [&](int n) { return int(random() % unsigned(n)); };

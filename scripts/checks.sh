@@ -48,11 +48,12 @@ limited_pytest() {
 }
 
 # The Python tests: files of them on both cores, then those that measure seconds. Reports are
-# build/logs/pytest_{0,1}.xml.
+# build/logs/pytest_{0,1}.xml. Where a process crashes, which pytest-xdist may wait for without end
+# after it has started another one, it names the test and stops.
 all_pytest() {
   local status=0
   limited_pytest 2400 -m "not long and not timed" -n 2 --dist loadfile \
-    --junitxml="$logs/pytest_0.xml" || status=1
+    --max-worker-restart=0 --junitxml="$logs/pytest_0.xml" || status=1
   limited_pytest 900 -m "timed and not long" --junitxml="$logs/pytest_1.xml" || status=1
   return $status
 }

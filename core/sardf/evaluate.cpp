@@ -23,13 +23,13 @@ size_t padded(size_t n) {
 }
 
 void run(const Instruction& i, const float* const* in, float* out, size_t n) {
-  i.operation->kernels().value(i.operation->object(), in, out, n);
+  i.kernels->value(i.object, in, out, n);
 }
 void run(const Instruction& i, const double* const* in, double* out, size_t n) {
   i.operation->evaluate(in, out, n);
 }
 void run(const Instruction& i, const float* const* in, float* out, float* const* by, size_t n) {
-  i.operation->kernels().partials(i.operation->object(), in, out, by, n);
+  i.kernels->partials(i.object, in, out, by, n);
 }
 void run(const Instruction& i, const double* const* in, double* out, double* const* by, size_t n) {
   i.operation->partials(in, out, by, n);
@@ -43,25 +43,41 @@ T* scratch(size_t n) {
 
 // Copies the coordinates into registers 0, 1, 2, the last point repeated up to the padded length.
 template <class T>
-void load(const Tape& tape, const T* const* xyz, size_t n, T* registers) {
+void load_coordinates(const T* const* xyz, size_t n, T* registers) {
   for (int axis = 0; axis < 3; ++axis) {
     T* to = registers + axis * block_size;
     std::copy_n(xyz[axis], n, to);
     std::fill(to + n, to + padded<T>(n), xyz[axis][n - 1]);
   }
+}
+
+template <class T>
+void load_constants(const Tape& tape, size_t n, T* registers) {
   for (const Tape::Constant& c : tape.constants()) {
     std::fill_n(registers + c.reg * block_size, padded<T>(n), T(c.value));
   }
 }
 
-// Where each register lies. In a full block the results of operations that are outputs are written
-// to the caller's arrays; the others are copied at the end.
+// Else lanes lie across two cache lines, which costs twice.
+bool is_aligned(const void* memory) { return reinterpret_cast<uintptr_t>(memory) % 64 == 0; }
+
+// Where each register lies, those that are not computed filled. Of a block of whole lanes the
+// caller's arrays are the registers of the coordinates, which no instruction writes to, and of
+// results that are outputs.
 template <class T>
-T* const* place_registers(const Tape& tape, T* registers, size_t n, T* const* out) {
+T* const* place_registers(const Tape& tape, const T* const* xyz, size_t n, T* const* out) {
+  T* const registers = scratch<T>(tape.registers() * block_size);
   thread_local Scratch<T*> places;
   T** at = places.get(tape.registers());
   for (size_t r = 0; r < tape.registers(); ++r) at[r] = registers + r * block_size;
-  if (n != padded<T>(n)) return at;
+  load_constants(tape, n, registers);
+  const bool whole = n == padded<T>(n);
+  if (whole && std::all_of(xyz, xyz + 3, is_aligned)) {
+    for (size_t axis = 0; axis < 3; ++axis) at[axis] = const_cast<T*>(xyz[axis]);
+  } else {
+    load_coordinates(xyz, n, registers);
+  }
+  if (!whole) return at;
   const size_t first_result = 3 + tape.constants().size();
   for (size_t k = 0; k < tape.outputs().size(); ++k) {
     const uint32_t r = tape.outputs()[k];
@@ -72,9 +88,7 @@ T* const* place_registers(const Tape& tape, T* registers, size_t n, T* const* ou
 
 template <class T>
 void evaluate_block(const Tape& tape, const T* const* xyz, size_t n, T* const* out) {
-  T* registers = scratch<T>(tape.registers() * block_size);
-  load(tape, xyz, n, registers);
-  T* const* at = place_registers(tape, registers, n, out);
+  T* const* at = place_registers(tape, xyz, n, out);
   for (const Instruction& i : tape.instructions()) {
     std::array<const T*, max_arity> in;
     for (size_t k = 0; k < in.size(); ++k) in[k] = at[i.in[k]];
@@ -110,7 +124,8 @@ void gradient_of_block(const Tape& tape, const T* const* xyz, size_t n, T* out,
   };
   // Coordinates and constants come first; their slopes are 1 and 0 and are not stored.
   const uint32_t first_stored = uint32_t(3 + tape.constants().size());
-  load(tape, xyz, n, registers);
+  load_coordinates(xyz, n, registers);
+  load_constants(tape, n, registers);
   for (const Instruction& i : tape.instructions()) {
     std::array<const T*, max_arity> in;
     for (size_t k = 0; k < in.size(); ++k) in[k] = registers + i.in[k] * block_size;

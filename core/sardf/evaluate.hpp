@@ -63,7 +63,8 @@ class Evaluator {
   void gradients(const float* points, size_t n, float* out, float* gradient) const;
 
   /// One block on the calling thread, for callers that run their own loops: coordinates as arrays,
-  /// out[k] the array of output k. n <= block_size; arrays need room for n only.
+  /// out[k] the array of output k, which overlaps no other one. n <= block_size; arrays need room
+  /// for n only.
   static constexpr size_t block_size = 256;
   void block(const float* x, const float* y, const float* z, size_t n, float* const* out) const;
   void block(const double* x, const double* y, const double* z, size_t n, double* const* out) const;

@@ -104,7 +104,9 @@ Tape::Tape(const Code& code) : source_(code.source), outputs_(code.outputs) {
   std::vector<uint32_t> free;
   instructions_.reserve(code.steps.size());
   for (uint32_t s = 0; s < code.steps.size(); ++s) {
-    Instruction instruction{code.steps[s].operation, code.steps[s].in, 0};
+    const Operation* operation = code.steps[s].operation;
+    Instruction instruction{operation, &operation->kernels(), operation->object(), code.steps[s].in,
+                            0};
     // The result may not overwrite an input: kernels read and write in steps of their own width.
     if (free.empty()) {
       instruction.out = uint32_t(registers_++);

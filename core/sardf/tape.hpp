@@ -12,6 +12,9 @@ namespace sardf {
 
 struct Instruction {
   const Operation* operation;
+  // The operation's own, asked for once: a virtual call for each block would be felt.
+  const Kernels* kernels;
+  const void* object;
   std::array<uint32_t, max_arity> in;
   uint32_t out;
 };

@@ -140,6 +140,28 @@ void evaluate_covered(benchmark::State& state) {
   state.SetItemsProcessed(int64_t(count) * int64_t(state.iterations()));
 }
 
+/// The same evaluation of the colour, its results written into memory that is new, as for so many
+/// points they have to be.
+void evaluate_into_memory(benchmark::State& state) {
+  static const CoveredPoints points;
+  const Evaluator evaluator(bench::graded_block(2).color);
+  constexpr size_t block = Evaluator::block_size, times = 16;
+  const size_t count = points.at[0].size();
+  for (auto _ : state) {
+    ImageSamples results;
+    results.resize(3 * times * count);
+    float* out[3] = {results.data(), &results[times * count], &results[2 * times * count]};
+    for (size_t time = 0; time < times; ++time)
+      for (size_t i = 0; i < count; i += block) {
+        const size_t n = std::min(block, count - i);
+        evaluator.block(&points.at[0][i], &points.at[1][i], &points.at[2][i], n, out);
+        for (float*& to : out) to += n;
+      }
+    benchmark::DoNotOptimize(results.data());
+  }
+  state.SetItemsProcessed(int64_t(times * count) * int64_t(state.iterations()));
+}
+
 /// A bake of the base colour with so many threads; with or without the points' movement.
 void bake_base_color(benchmark::State& state) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
@@ -180,6 +202,7 @@ BENCHMARK(find_points)->Arg(2048)->Arg(4096)->Unit(benchmark::kMillisecond);
 BENCHMARK(find_and_project_points)->Arg(2048)->Arg(4096)->Unit(benchmark::kMillisecond);
 BENCHMARK(bake_two_channels)->Arg(2048)->Arg(4096)->Unit(benchmark::kMillisecond);
 BENCHMARK(evaluate_covered)->ArgName("field")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(evaluate_into_memory)->Unit(benchmark::kMillisecond);
 BENCHMARK(write_image)->Unit(benchmark::kMillisecond);
 BENCHMARK(bake_base_color)
     ->ArgNames({"threads", "move"})

@@ -67,19 +67,17 @@ TileBins make_bins(const UvLayout& layout, size_t items, BoxOf box_of) {
   return bins;
 }
 
-double length_of(const Vec3& a) { return std::sqrt(dot(a, a)); }
-
 double longest_edge(const Mesh& mesh, uint32_t face) {
   const auto& v = mesh.faces[face];
   double longest = 0;
   for (size_t k = 0; k < 4; ++k)
-    longest = std::max(longest, length_of(mesh.vertices[v[(k + 1) % 4]] - mesh.vertices[v[k]]));
+    longest = std::max(longest, quick_norm(mesh.vertices[v[(k + 1) % 4]] - mesh.vertices[v[k]]));
   return longest;
 }
 
 /// Of a vector that may be 0.
 std::array<float, 3> direction_of(const Vec3& a) {
-  const double length = length_of(a), by = length > 0 ? 1 / length : 0;
+  const double length = quick_norm(a), by = length > 0 ? 1 / length : 0;
   return {float(by * a[0]), float(by * a[1]), float(by * a[2])};
 }
 
@@ -385,7 +383,7 @@ class TileRaster {
     for (size_t axis = 0; axis < 3; ++axis) out_.point[axis][out_.count] = float(point[axis]);
     // Beyond a crease the zero set belongs to another face.
     const double limit =
-        border.crease ? 0 : 0.5 * (longest_edge(mesh_, border.face) + length_of(beyond));
+        border.crease ? 0 : 0.5 * (longest_edge(mesh_, border.face) + quick_norm(beyond));
     out_.on[out_.count] = static_cast<uint32_t>(out_.surfaces.size());
     out_.surfaces.push_back({direction_of(cross(by_x, by_y)), float(limit)});
     if (corners_) write_corners(border, t, out_.count);

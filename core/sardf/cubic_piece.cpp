@@ -21,12 +21,10 @@ std::array<T, 6> bernstein_of(const std::array<T, 6>& powers) {
   return all;
 }
 
-double length_of(const Vec3& a) { return std::sqrt(dot(a, a)); }
-
 double distance_to_chord(const Vec3& from_start, const Vec3& chord) {
   const double squared = dot(chord, chord);
   const double at = squared > 0 ? std::clamp(dot(from_start, chord) / squared, 0.0, 1.0) : 0;
-  return length_of(from_start - at * chord);
+  return quick_norm(from_start - at * chord);
 }
 
 }  // namespace
@@ -48,9 +46,9 @@ CubicPiece::CubicPiece(const Weighted* points) {
   level = bernstein_of(constant);
   along = bernstein_of<Vec3>({by_1, 2 * by_2, 3 * by_3, {}, {}, {}});
   for (size_t k = 0; k < 6; ++k) {
-    length[k] = length_of(along[k]);
+    length[k] = quick_norm(along[k]);
     longest = std::max(longest, length[k]);
-    if (k > 0) change[k - 1] = length_of(along[k] - along[k - 1]);
+    if (k > 0) change[k - 1] = quick_norm(along[k] - along[k - 1]);
   }
   for (int k = 0; k < 4; ++k) box.add(at(k));
   chord = at(3) - at(0);
@@ -66,7 +64,7 @@ bool CubicPiece::is_proven(const Vec3& centre, double radius) const {
   const Vec3 a = start - centre;
   // What a coefficient may be off by, many times over; more for a ball than for its points.
   const double error =
-      (radius > 0 ? 0x1p-42 : 0x1p-44) * longest * (longest + length_of(a) + radius);
+      (radius > 0 ? 0x1p-42 : 0x1p-44) * longest * (longest + quick_norm(a) + radius);
   // So steep f must be: then its zero has all digits but a few.
   const double least_rise = 0x1p-8 * longest * longest + error;
   bool falls = true, grows = true, rises = true;

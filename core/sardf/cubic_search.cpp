@@ -44,8 +44,7 @@ CubicFound CubicSearch::nearest(const Vec3& point) const {
 
 CubicSearch::Near CubicSearch::pieces_near(const Vec3& centre, double radius, size_t most) const {
   const Vec3 toward = nearest(centre).toward;
-  const double reach =
-      with_room(std::sqrt(dot(toward, toward)) + 2 * radius, magnitude_, room_of_ball);
+  const double reach = with_room(quick_norm(toward) + 2 * radius, magnitude_, room_of_ball);
   Near near;
   double bound = reach * reach;
   tree_->visit_near(centre, bound, [&](size_t i) {
@@ -61,7 +60,7 @@ bool CubicSearch::solve(const Points& points, size_t n, CubicFound* found) const
   Extent box;
   for (size_t i = 0; i < n; ++i) box.add(Vec3{points[0][i], points[1][i], points[2][i]});
   const Vec3 centre = 0.5 * (box.lo + box.hi), corner = box.hi - centre;
-  const double radius = std::sqrt(dot(corner, corner)) * (1 + 0x1p-40);
+  const double radius = quick_norm(corner) * (1 + 0x1p-40);
   const Near near = pieces_near(centre, radius, n > small_block ? few_pieces : most_pieces);
   if (!near.is_proven) return false;
   const size_t whole = (n + 7) / 8 * 8;

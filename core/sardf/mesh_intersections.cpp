@@ -19,7 +19,6 @@ using Float4 = Lanes<Baseline>;
 // Rounding of a projection, relative to the lengths that it is a product of, and more.
 constexpr double rounding = 4e-15;
 
-double length_of(const Vec3& a) { return std::sqrt(dot(a, a)); }
 double sum_of(const Vec3& a) { return std::abs(a[0]) + std::abs(a[1]) + std::abs(a[2]); }
 
 /// A product of edges, with the product of their lengths.
@@ -72,7 +71,7 @@ class Pair {
 
   static Direction edge(const Corners& of, size_t from, size_t to) {
     const Vec3 along = of[to] - of[from];
-    return {along, length_of(along)};
+    return {along, quick_norm(along)};
   }
 
   // The common corner is on all planes; what else is on one are edges that end there, at most one

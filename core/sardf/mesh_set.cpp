@@ -18,8 +18,6 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 // Nearer than this (local) the direction to the nearest point is lost to rounding.
 constexpr double no_direction = 1e-13;
 
-double length_of(const Vec3& a) { return std::sqrt(dot(a, a)); }
-
 bool encloses_negative_volume(const TriangleTree& tree, Pulse& pulse) {
   double volume = 0;
   for (const TriangleTree::Triangle& t : tree.triangles()) {
@@ -76,9 +74,9 @@ class MeshPoints : public PointSet {
     const size_t part = at.part % 8;
     const Vec3 normal = unit_normal(t), away = tree_.to_local(point) - tree_.to_local(at.point);
     // Straight above the end of a face, the face's is one of the two derivatives.
-    const bool above = std::abs(dot(away, normal)) > (1 - 1e-12) * length_of(away);
+    const bool above = std::abs(dot(away, normal)) > (1 - 1e-12) * quick_norm(away);
     std::array<Vec3, 3> rows{};
-    if (part == 0 || (above && length_of(away) > no_direction)) {
+    if (part == 0 || (above && quick_norm(away) > no_direction)) {
       for (size_t k = 0; k < 3; ++k) {
         rows[k] = -normal[k] * normal;
         rows[k][k] += 1;
@@ -115,7 +113,7 @@ class MeshPoints : public PointSet {
 
   Vec3 unit_normal(const TriangleTree::Triangle& t) const {
     const Vec3 area = tree_.area_vector(t);
-    const double length = length_of(area);
+    const double length = quick_norm(area);
     return length > 0 ? (1 / length) * area : Vec3{};
   }
 
@@ -193,7 +191,7 @@ class SolidPoints : public MeshPoints {
  protected:
   Vec3 gradient_on(const TrianglePoint& at) const override {
     const Vec3 out = outward(at);
-    const double length = length_of(out);
+    const double length = quick_norm(out);
     return length > 0 ? (-1 / length) * out : Vec3{not_a_number, not_a_number, not_a_number};
   }
   virtual Vec3 outward(const TrianglePoint& at) const {
@@ -248,7 +246,7 @@ class WindingSolid final : public SolidPoints {
     if (query.known && solidity_.topology.is_closed()) {
       const double reach = std::max(at.distance, std::abs(query.known->distance));
       const Vec3 between = query.point - tree().to_local(*query.beside);
-      if (tree().unit() * length_of(between) < 0.999999 * reach) return query.known->distance > 0;
+      if (tree().unit() * quick_norm(between) < 0.999999 * reach) return query.known->distance > 0;
     }
     const Interval winding = solidity_.winding.over_ball(query.point, 0);
     return winding.lo + winding.hi > 1;

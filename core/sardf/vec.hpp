@@ -21,6 +21,8 @@ inline Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 inline double norm(const Vec3& a) { return std::hypot(a[0], a[1], a[2]); }
+/// The same where squares neither overflow nor vanish, several times as fast.
+inline double quick_norm(const Vec3& a) { return std::sqrt(dot(a, a)); }
 inline Vec3 normalized(const Vec3& a) { return (1 / norm(a)) * a; }
 inline Vec3 unit_or_zero(const Vec3& a) {
   const double length = norm(a);

@@ -16,7 +16,7 @@ constexpr double full_turn = 4 * std::numbers::pi;
 // Of the triangle seen from the origin, over 4 π.
 // Source: van Oosterom and Strackee 1983, "The solid angle of a plane triangle".
 double turns(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const double la = std::sqrt(dot(a, a)), lb = std::sqrt(dot(b, b)), lc = std::sqrt(dot(c, c));
+  const double la = quick_norm(a), lb = quick_norm(b), lc = quick_norm(c);
   const double volume = dot(a, cross(b, c));
   const double rest = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
   return volume == 0 ? 0 : 2 / full_turn * std::atan2(volume, rest);
@@ -43,7 +43,7 @@ double farthest_corner(const TriangleTree::Node& node, size_t child, const Vec3&
   for (size_t k = 0; k < 3; ++k) {
     away[k] = std::max(double(node.hi[k][child]) - from[k], from[k] - double(node.lo[k][child]));
   }
-  return std::sqrt(dot(away, away));
+  return quick_norm(away);
 }
 
 // How much the winding number of area 1 may change within `reach` of a point at this distance: its
@@ -82,7 +82,7 @@ WindingNumber::Cell WindingNumber::cell_of_leaf(const TriangleTree::Node& node,
   for (uint32_t i = first; i < last; ++i) {
     const TriangleTree::Triangle& t = tree_.triangles()[i];
     const Vec3 vector = 0.5 * tree_.area_vector(t);
-    const double area = std::sqrt(dot(vector, vector));
+    const double area = quick_norm(vector);
     cell.area += area;
     cell.dipole = cell.dipole + vector;
     cell.centre =
@@ -96,7 +96,7 @@ WindingNumber::Cell WindingNumber::cell_of_leaf(const TriangleTree::Node& node,
     add_product(cell.moment, 0.5 * tree_.area_vector(t), mean - cell.centre);
     for (size_t k = 0; k < 3; ++k) {
       const Vec3 away = tree_.corner(t, k) - cell.centre;
-      cell.radius = std::max(cell.radius, std::sqrt(dot(away, away)));
+      cell.radius = std::max(cell.radius, quick_norm(away));
     }
   }
   return cell;
@@ -119,7 +119,7 @@ WindingNumber::Cell WindingNumber::cell_of_node(const TriangleTree::Node& node,
     const Vec3 offset = part.centre - cell.centre;
     for (size_t k = 0; k < 6; ++k) cell.moment[k] += part.moment[k];
     add_product(cell.moment, part.dipole, offset);
-    reach = std::max(reach, std::sqrt(dot(offset, offset)) + part.radius);
+    reach = std::max(reach, quick_norm(offset) + part.radius);
   }
   cell.radius = std::min(reach, farthest_corner(node, child, cell.centre));
   return cell;
@@ -137,10 +137,9 @@ void WindingNumber::add_leaf(const Ball& ball, uint32_t first, uint32_t count, S
     double radius = 0;
     for (const Vec3& corner : {a, b, c}) {
       const Vec3 away = corner - mean;
-      radius = std::max(radius, std::sqrt(dot(away, away)));
+      radius = std::max(radius, quick_norm(away));
     }
-    const double most =
-        0.5 * std::sqrt(dot(area, area)) * change(std::sqrt(dot(mean, mean)) - radius, ball.radius);
+    const double most = 0.5 * quick_norm(area) * change(quick_norm(mean) - radius, ball.radius);
     // No triangle fills more than half of the view.
     sum.error += most < 1 ? most : 1;
   }

@@ -28,9 +28,9 @@ class FunctionPrinter {
   void declare(const std::string& name, const Terms& terms, int root, int inputs,
                InputNames input_names);
 
-  /// The term as text in x, y and z for a place where it is evaluated very often: what is as quick
-  /// to compute again as to pass is not passed. A text that is too long to stand there is declared
-  /// as `name`, and called. Its helpers are named as above.
+  /// The term as text in x, y and z, the terms 0, 1 and 2, for a place where it is evaluated very
+  /// often: what is as quick to compute again as to pass is not passed. A text that is too long to
+  /// stand there is declared as `name`, and called. Its helpers are named as above.
   std::string quick(const std::string& name, const Terms& terms, int root);
 
   /// Adds text that declares what functions after it call.

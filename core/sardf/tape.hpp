@@ -12,7 +12,7 @@ namespace sardf {
 
 struct Instruction {
   const Operation* operation;
-  // The operation's own, asked for once: a virtual call for each block would be felt.
+  // The operation's own, asked for once and not by two virtual calls for each block.
   const Kernels* kernels;
   const void* object;
   std::array<uint32_t, max_arity> in;

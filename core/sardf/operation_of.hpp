@@ -209,7 +209,8 @@ class OperationOf final : public Operation {
     if constexpr (is_monotone<Op> && arity == 2) {
       std::array<Interval, arity> values{in[0].value, in[1].value};
       const double error = float_error(Interval(largest(values.data())), values.data());
-      return fate_between(in, demand, Op::monotone, magnitude_, error, chosen);
+      const auto evaluated = [this](const double* at) { return evaluate(at); };
+      return fate_between(in, demand, Op::monotone, magnitude_, error, chosen, evaluated);
     }
     return fate_of(chosen(in));
   }

@@ -70,7 +70,7 @@ void find_points(benchmark::State& state) {
 void find_and_project_points(benchmark::State& state) {
   const Part& p = part(int(state.range(0)));
   const TexelMap texels(p.mesh, int(state.range(0)));
-  const Evaluator solid(p.solid);
+  const LocalEvaluator solid(Evaluator{p.solid}, block_bounds());
   baking::TilePoints points;
   size_t found = 0;
   for (auto _ : state)
@@ -106,7 +106,7 @@ struct CoveredPoints {
   std::array<std::vector<float>, 3> at;
   CoveredPoints() {
     const TexelMap texels(large_part().mesh, large);
-    const Evaluator solid(large_part().solid);
+    const LocalEvaluator solid(Evaluator{large_part().solid}, block_bounds());
     const auto points = std::make_unique<baking::TilePoints>();
     for (size_t tile = 0; tile < texels.layout().tiles(); tile += 16) {
       baking::find_texels(texels.layout(), tile, *points);

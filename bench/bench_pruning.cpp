@@ -11,6 +11,7 @@
 
 #include "sardf/bounds.hpp"
 #include "sardf/constructor.hpp"
+#include "sardf/local_evaluator.hpp"
 #include "sardf/mesher.hpp"
 #include "sardf/plane_image.hpp"
 #include "sardf/shorten.hpp"
@@ -102,6 +103,39 @@ BENCHMARK_CAPTURE(bound_balls, min_max, "min_max")
     ->Arg(1000)
     ->Arg(10000)
     ->Unit(benchmark::kMillisecond);
+
+// Values at points beside each other, block by block, as texels and rays have them, once programs
+// for where they lie are made.
+void evaluate_balls(benchmark::State& state) {
+  const LocalEvaluator local(balls(1000, "sardf"), {{0, 0, 0}, {1, 1, 1}});
+  constexpr size_t block = Evaluator::block_size, blocks = 200;
+  constexpr int rounds = 64;  // until all programs are made
+  std::mt19937 engine(2);
+  std::uniform_real_distribution<float> in_cube(0, 1), beside(0, 0.02f);
+  std::vector<float> at[3];
+  for (size_t i = 0; i < blocks; ++i) {
+    for (auto& row : at) {
+      const float middle = in_cube(engine);
+      for (size_t k = 0; k < block; ++k) row.push_back(middle + beside(engine));
+    }
+  }
+  float out[block];
+  float* to = out;
+  const auto evaluate = [&] {
+    for (size_t i = 0; i < at[0].size(); i += block) {
+      if (state.range(0)) {
+        local.block(&at[0][i], &at[1][i], &at[2][i], block, &to);
+      } else {
+        local.whole().block(&at[0][i], &at[1][i], &at[2][i], block, &to);
+      }
+      benchmark::DoNotOptimize(to);
+    }
+  };
+  for (int i = 0; i < rounds; ++i) evaluate();
+  for (auto _ : state) evaluate();
+  state.SetItemsProcessed(int64_t(state.iterations()) * int64_t(blocks * block));
+}
+BENCHMARK(evaluate_balls)->ArgName("local")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
 // One pass over a program of ten thousand balls, for a box in which few of them matter.
 void shorten_balls(benchmark::State& state, const std::string& blend) {

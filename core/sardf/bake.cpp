@@ -29,14 +29,14 @@ constexpr double on_surface = 2e-7;
 constexpr double nudge_length = 1e-5;
 constexpr Vec3 nudges[] = {{0.61, 0.47, 0.64}, {-0.73, 0.31, 0.61}, {0.29, -0.83, -0.48}};
 
-double diagonal(const Mesh& mesh) {
+BoundingBox bounds(const Mesh& mesh) {
   BoundingBox box{mesh.vertices[0], mesh.vertices[0]};
   for (const Vec3& v : mesh.vertices)
     for (size_t axis = 0; axis < 3; ++axis) {
       box.lo[axis] = std::min(box.lo[axis], v[axis]);
       box.hi[axis] = std::max(box.hi[axis], v[axis]);
     }
-  return box.diagonal();
+  return box;
 }
 
 int components_of(const BakeChannel& channel) {
@@ -66,7 +66,7 @@ struct NormalSource {
 /// Some channels of a bake: one evaluator for all their components, and their images.
 class Group {
  public:
-  Group(std::span<const BakeChannel> channels, int size) : channels_(channels) {
+  Group(std::span<const BakeChannel> channels, const Mesh& mesh, int size) : channels_(channels) {
     std::vector<Expression> outputs;
     for (const BakeChannel& channel : channels) {
       const int components = components_of(channel);
@@ -74,7 +74,7 @@ class Group {
       images.back().samples.resize(size_t(size) * size * components);
       outputs.insert(outputs.end(), channel.components.begin(), channel.components.end());
     }
-    if (!outputs.empty()) evaluator_ = Evaluator(outputs);
+    if (!outputs.empty()) evaluator_ = LocalEvaluator(Evaluator(outputs), bounds(mesh));
     undefined = std::vector<std::atomic<size_t>>(channels.size());
   }
 
@@ -199,7 +199,7 @@ class Group {
     const Vec3 point{points.point[0][p], points.point[1][p], points.point[2][p]};
     std::vector<double> values(out.size());
     const auto take = [&](const Vec3& from) {
-      evaluator_.values(from, values.data());
+      evaluator_.whole().values(from, values.data());
       for (size_t k = 0; k < out.size(); ++k)
         if (!std::isfinite(out[k][i])) out[k][i] = static_cast<float>(values[k]);
     };
@@ -219,7 +219,7 @@ class Group {
   }
 
   std::span<const BakeChannel> channels_;
-  Evaluator evaluator_;
+  LocalEvaluator evaluator_;
 };
 
 /// work(tile) for all tiles on all threads, reporting shares [from, to].
@@ -242,8 +242,9 @@ void for_tiles(size_t tiles, const Progress& progress, double from, double to, W
 class Baker {
  public:
   Baker(const baking::UvLayout& layout, const Expression& solid) : layout_(layout) {
-    if (solid) solid_.emplace(solid);
-    const double length = diagonal(*layout.mesh);
+    const BoundingBox box = bounds(*layout.mesh);
+    const double length = box.diagonal();
+    if (solid) solid_.emplace(Evaluator(solid), box);
     tolerance_ = static_cast<float>(on_surface * length);
     nudge_ = nudge_length * length;
     resize_large(covered, size_t(layout.size) * size_t(layout.size));
@@ -253,7 +254,7 @@ class Baker {
   void prepare_normals(const Progress& progress) {
     if (!solid_) throw Error("a normal map can only be baked of a solid");
     tangents_ = corner_tangents(*layout_.mesh, progress);
-    normals_.emplace(NormalSource{*solid_, *layout_.mesh, tangents_});
+    normals_.emplace(NormalSource{solid_->whole(), *layout_.mesh, tangents_});
   }
 
   void run(Group& group, const Progress& progress, double from, double to) {
@@ -291,7 +292,7 @@ class Baker {
   }
 
   const baking::UvLayout& layout_;
-  std::optional<Evaluator> solid_;
+  std::optional<LocalEvaluator> solid_;
   std::vector<std::array<float, 4>> tangents_;
   std::optional<NormalSource> normals_;
   float tolerance_ = 0;
@@ -327,7 +328,7 @@ BakeReport bake(const TexelMap& texels, const Expression& solid,
     const double from = double(first) / double(channels.size());
     const double to = double(first + n) / double(channels.size());
     if (progress && !progress(from)) throw Cancelled();
-    Group group(channels.subspan(first, n), texels.size());
+    Group group(channels.subspan(first, n), *texels.layout().mesh, texels.size());
     baker.run(group, progress, from, to);
     if (first == 0) {
       report.covered = baker.found;

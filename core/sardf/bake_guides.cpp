@@ -65,7 +65,7 @@ float dot(const std::array<float, 3>& a, const std::array<float, 3>& b) {
 /// The nodes of some triangles on their way onto the surface, in one block.
 class Nodes {
  public:
-  Nodes(const Evaluator& solid, float tolerance) : solid_(solid), tolerance_(tolerance) {}
+  Nodes(const LocalEvaluator& solid, float tolerance) : solid_(solid), tolerance_(tolerance) {}
 
   bool is_full() const { return count_ == most_triangles; }
   void add(uint32_t triangle) { triangle_[count_++] = triangle; }
@@ -184,7 +184,7 @@ class Nodes {
     return a;
   }
 
-  const Evaluator& solid_;
+  const LocalEvaluator& solid_;
   float tolerance_;
   size_t count_ = 0;
   std::array<uint32_t, most_triangles> triangle_;
@@ -214,7 +214,7 @@ class ThreePoints {
 
 /// The triangles large enough to have guides that are not within the tolerance at the middles of
 /// their edges.
-void find_curved(const Evaluator& solid, const TilePoints& points, float tolerance,
+void find_curved(const LocalEvaluator& solid, const TilePoints& points, float tolerance,
                  std::vector<uint32_t>& curved) {
   ThreePoints middles;
   const auto finish = [&] {
@@ -270,7 +270,7 @@ bool find_directions(const std::array<std::array<float, 3>, 3>& gradient, const 
 }
 
 /// Of the curved triangles.
-void find_directions(const Evaluator& solid, const TilePoints& points,
+void find_directions(const LocalEvaluator& solid, const TilePoints& points,
                      std::span<const uint32_t> curved, Guides& guides) {
   ThreePoints corners;
   for (size_t first = 0; first < curved.size(); first += ThreePoints::most) {
@@ -299,7 +299,7 @@ void find_directions(const Evaluator& solid, const TilePoints& points,
 
 }  // namespace
 
-void find_guides(const Evaluator& solid, const TilePoints& points, float tolerance,
+void find_guides(const LocalEvaluator& solid, const TilePoints& points, float tolerance,
                  Guides& guides) {
   guides.bend_of.assign(points.triangles.size(), Guides::none);
   guides.directions_of.assign(points.triangles.size(), Guides::none);

@@ -73,7 +73,7 @@ class BentPoints {
 /// start, or after one step.
 class Movement {
  public:
-  Movement(const Evaluator& solid, TilePoints& points, float tolerance)
+  Movement(const LocalEvaluator& solid, TilePoints& points, float tolerance)
       : solid_(solid), points_(points), tolerance_(tolerance) {}
 
   void run() {
@@ -294,7 +294,7 @@ class Movement {
     for (size_t axis = 0; axis < 3; ++axis) points_.point[axis][place_[k]] = at_[axis][k];
   }
 
-  const Evaluator& solid_;
+  const LocalEvaluator& solid_;
   TilePoints& points_;
   float tolerance_;
   BentPoints bent_;
@@ -308,7 +308,7 @@ class Movement {
 
 }  // namespace
 
-void project(const Evaluator& solid, TilePoints& points, float tolerance) {
+void project(const LocalEvaluator& solid, TilePoints& points, float tolerance) {
   Movement(solid, points, tolerance).run();
 }
 

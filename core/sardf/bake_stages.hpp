@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "sardf/evaluate.hpp"
+#include "sardf/local_evaluator.hpp"
 #include "sardf/mesh.hpp"
 #include "sardf/numbers/lanes.hpp"
 
@@ -193,10 +193,11 @@ struct Guides {
 /// already, with enough texels: directions where gradients are within 30 degrees of the triangle's
 /// normal, and bends where those move nearly all points to within the tolerance, by at most the
 /// triangle's limit.
-void find_guides(const Evaluator& solid, const TilePoints& points, float tolerance, Guides& guides);
+void find_guides(const LocalEvaluator& solid, const TilePoints& points, float tolerance,
+                 Guides& guides);
 
 /// Moves the points that are farther than `tolerance`, by the field, onto the zero set of `solid`.
-void project(const Evaluator& solid, TilePoints& points, float tolerance);
+void project(const LocalEvaluator& solid, TilePoints& points, float tolerance);
 
 /// The gradients of points [first, first + n) of a tile, by coordinate, become the colours of the
 /// solid's normal in the mesh's tangent space (bake.hpp).

@@ -82,7 +82,7 @@ bool set_frame(Subject& subject, const RenderOptions& options) {
   const double slope = subject.slopes.largest();
   const double misplaced = misplacement(subject.rays, bounds, options);
   const double error = subject.error_single;
-  if (!is_single(subject.solid)) return false;
+  if (!is_single(subject.solid.whole())) return false;
   const Stretch depths = subject.rays.depths(bounds);
   const double range = depths.end - depths.begin;
   if (!(error < most_single_error * bounds.diagonal()) || !(range > 0)) return false;
@@ -102,15 +102,15 @@ bool set_frame(Subject& subject, const RenderOptions& options) {
   return true;
 }
 
-Subject make_subject(const Evaluator& solid, const BoundingBox& bounds,
+Subject make_subject(const LocalEvaluator& solid, const BoundingBox& bounds,
                      const RenderOptions& options, Watch& watch) {
   const double diagonal = bounds.diagonal();
   Subject subject{solid,
                   bounds,
                   Rays(options.camera, options.width, options.height),
-                  LocalSlopes(solid, bounds, slope_cells(options), [&] { watch.check(); }),
+                  LocalSlopes(solid.whole(), bounds, slope_cells(options), [&] { watch.check(); }),
                   options.tolerance.value_or(default_tolerance * diagonal),
-                  single_precision_error(solid, bounds)};
+                  single_precision_error(solid.whole(), bounds)};
   subject.error_double = double_precision_error(bounds, std::min(subject.slopes.largest(), 1e6));
   subject.single = set_frame(subject, options);
   return subject;
@@ -165,7 +165,8 @@ void for_tiles(const Evaluator& solid, const BoundingBox& bounds, const RenderOp
   tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, most_threads)
                                             : tbb::task_arena::automatic);
   arena.execute([&] {
-    const Subject subject = make_subject(solid, bounds, options, watch);
+    const LocalEvaluator local(solid, bounds);
+    const Subject subject = make_subject(local, bounds, options, watch);
     tbb::parallel_for(0, columns * rows, [&](int i) {
       watch.check();
       const Tile tile{i % columns * tile_edge, i / columns * tile_edge, tile_edge};
@@ -182,9 +183,9 @@ class Painter {
   Painter(const Scene& scene, const RenderOptions& options, Image& image)
       : options_(options), image_(image) {
     const std::array<Expression, 3> color = scene.base_color();
-    color_ = Evaluator(std::span<const Expression>(color));
+    color_ = LocalEvaluator(Evaluator(std::span<const Expression>(color)), scene.bounds());
     shows_colors_alone_ = options.look == RenderLook::flat && !options.normals && !options.depth &&
-                          single_does(scene.bounds(), color_);
+                          single_does(scene.bounds(), color_.whole());
   }
 
   void paint(const Subject& subject, const Tile& tile, Watch& watch) const {
@@ -253,7 +254,7 @@ class Painter {
 
   const RenderOptions& options_;
   Image& image_;
-  Evaluator color_;
+  LocalEvaluator color_;
   // No one sees where exactly the surface lies, if the colours on both its sides are the same.
   bool shows_colors_alone_;
 };

@@ -29,9 +29,9 @@ BoundingBox box_of(const Line& line, double begin, double end) {
 
 // Of the values of the box, or of their growth from the sample at `before`, along the ray.
 bool is_clear(const Subject& subject, const Ray& ray, double end) {
-  if (subject.solid.interval(box_of(ray.line, ray.clear, end)).hi < 0) return true;
+  if (subject.solid.whole().interval(box_of(ray.line, ray.clear, end)).hi < 0) return true;
   if (!(ray.before_value < 0)) return false;
-  const Slope slope = subject.solid.slope(box_of(ray.line, ray.before, end));
+  const Slope slope = subject.solid.whole().slope(box_of(ray.line, ray.before, end));
   Interval growth;
   for (int axis = 0; axis < 3; ++axis) {
     growth = growth + slope.partial[axis] * Interval(ray.line.along[axis]);

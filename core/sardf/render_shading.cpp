@@ -131,7 +131,7 @@ double shown(double channel) { return channel > 0 ? std::min(channel, 1.0) : 0; 
 
 // The colours that single precision gives so far before and behind the surface; the numbers of
 // those that need double come into `open`.
-void find_single_colors(const Evaluator& color, std::span<Hit> hits, double aside,
+void find_single_colors(const LocalEvaluator& color, std::span<Hit> hits, double aside,
                         std::vector<size_t>& open, Watch& watch) {
   constexpr size_t half = Block<float>::capacity / 2;
   thread_local Block<float> block;
@@ -175,8 +175,8 @@ void find_normals(const Subject& subject, std::span<Hit> hits, Watch& watch) {
     for (size_t i = 0; i < n; ++i) {
       block.set(i, hits[first + i].at + aside * hits[first + i].toward);
     }
-    subject.solid.gradient_block(block.xyz[0], block.xyz[1], block.xyz[2], n, block.value,
-                                 gradient);
+    subject.solid.whole().gradient_block(block.xyz[0], block.xyz[1], block.xyz[2], n, block.value,
+                                         gradient);
     for (size_t i = 0; i < n; ++i) {
       const Vec3 inward{slopes[0][i], slopes[1][i], slopes[2][i]};
       const double length = norm(inward);
@@ -191,7 +191,7 @@ bool single_does(const BoundingBox& box, const Evaluator& color) {
   return norm(box.lo) + norm(box.hi) < far * box.diagonal();
 }
 
-void mix_colors(const Subject& subject, const Evaluator& color, RayTable& table, Watch& watch,
+void mix_colors(const Subject& subject, const LocalEvaluator& color, RayTable& table, Watch& watch,
                 const std::function<void(size_t, const std::array<float, 3>&)>& use) {
   constexpr size_t half = RayBlock::capacity / 2;
   thread_local RayBlock block;
@@ -217,10 +217,10 @@ void mix_colors(const Subject& subject, const Evaluator& color, RayTable& table,
   }
 }
 
-void find_colors(const Subject& subject, const Evaluator& color, std::span<Hit> hits,
+void find_colors(const Subject& subject, const LocalEvaluator& color, std::span<Hit> hits,
                  Watch& watch) {
   std::vector<size_t> open;
-  if (single_does(subject.bounds, color)) {
+  if (single_does(subject.bounds, color.whole())) {
     find_single_colors(color, hits, beside * subject.bounds.diagonal(), open, watch);
   } else {
     open.resize(hits.size());

@@ -24,10 +24,11 @@ void find_normals(const Subject& subject, std::span<Hit> hits, Watch& watch);
 bool single_does(const BoundingBox& box, const Evaluator& color);
 /// The colours themselves, as POV-Ray's flat picture has them: limited to [0, 1]. In single
 /// precision where `single_does` and that is seen to do.
-void find_colors(const Subject& subject, const Evaluator& color, std::span<Hit> hits, Watch& watch);
+void find_colors(const Subject& subject, const LocalEvaluator& color, std::span<Hit> hits,
+                 Watch& watch);
 /// The colours of the table's rays, all of which have met the solid: use(i, colour) where both
 /// sides of the surface have the same; the trial of the others becomes NaN.
-void mix_colors(const Subject& subject, const Evaluator& color, RayTable& table, Watch& watch,
+void mix_colors(const Subject& subject, const LocalEvaluator& color, RayTable& table, Watch& watch,
                 const std::function<void(size_t, const std::array<float, 3>&)>& use);
 
 /// Lights the colours: a key light with a soft shadow and two without, placed as in povray_gen's

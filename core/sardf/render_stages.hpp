@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "sardf/local_evaluator.hpp"
 #include "sardf/render_rays.hpp"
 #include "sardf/render_slopes.hpp"
 #include "sardf/render_table.hpp"
@@ -19,7 +20,7 @@ namespace sardf::rendering {
 
 /// What is looked at, and from where.
 struct Subject {
-  const Evaluator& solid;
+  const LocalEvaluator& solid;
   BoundingBox bounds;  // the solid has no point outside
   Rays rays;
   LocalSlopes slopes;
@@ -39,7 +40,7 @@ struct Block {
   void set(size_t i, const Vec3& p) {
     for (int axis = 0; axis < 3; ++axis) xyz[axis][i] = T(p[axis]);
   }
-  void evaluate(const Evaluator& solid, size_t n) {
+  void evaluate(const LocalEvaluator& solid, size_t n) {
     T* out = value;
     solid.block(xyz[0], xyz[1], xyz[2], n, &out);
   }

@@ -103,6 +103,7 @@ TEST_P(Projection, IsAsGoodAsOwnStepsAndOnTheSameFace) {
   const Part p(GetParam().solid(), GetParam().bounds, 32, size);
   const TexelMap texels(p.mesh, size, p.atlas.gutter);
   const Evaluator solid(p.solid);
+  const LocalEvaluator local(solid, GetParam().bounds);
   const double tolerance = 2e-7 * GetParam().bounds.diagonal(), texel = 1 / p.atlas.texels_per_unit;
   const double rounding = 1e-6;  // of the field in single precision, at coordinates of a few units
   const auto before = std::make_unique<baking::TilePoints>();
@@ -111,10 +112,10 @@ TEST_P(Projection, IsAsGoodAsOwnStepsAndOnTheSameFace) {
   size_t bent = 0, moved = 0;
   for (size_t tile = 0; tile < texels.layout().tiles(); tile += 9) {
     baking::find_texels(texels.layout(), tile, *before);
-    baking::find_guides(solid, *before, float(tolerance), guides);
+    baking::find_guides(local, *before, float(tolerance), guides);
     bent += guides.bends.size();
     *after = *before;
-    baking::project(solid, *after, float(tolerance));
+    baking::project(local, *after, float(tolerance));
     for (size_t k = 0; k < before->count; ++k) {
       const Vec3 from = point_of(*before, k), to = point_of(*after, k);
       const baking::PointSurface& on = before->surfaces[before->on[k]];
@@ -144,13 +145,14 @@ TEST(BakeBend, LeavesPointsOfAGrooveToTheirOwnSteps) {
   const float tolerance = 5e-6f;
   const auto points_that_stay = [&](const Expression& f) {
     const Evaluator solid(f);
+    const LocalEvaluator local(solid, {{0, 0, 0}, {1, 1, 1}});
     const auto before = std::make_unique<baking::TilePoints>();
     baking::find_texels(texels.layout(), 0, *before);
     const auto after = std::make_unique<baking::TilePoints>(*before);
     baking::Guides guides;
-    baking::find_guides(solid, *before, tolerance, guides);
+    baking::find_guides(local, *before, tolerance, guides);
     EXPECT_EQ(guides.bends.size(), 1u);
-    baking::project(solid, *after, tolerance);
+    baking::project(local, *after, tolerance);
     size_t staying = 0;
     for (size_t k = 0; k < before->triangles[0].texels; ++k) {
       const Vec3 from = point_of(*before, k), to = point_of(*after, k);

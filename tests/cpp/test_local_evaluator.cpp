@@ -129,10 +129,14 @@ TEST(LocalEvaluator, LeavesOutWhatIsFarAway) {
   for (auto& row : batch.xyz)
     for (float& each : row) each = float(laws::number_in(r, {0.1, 0.15}));
   const auto& [n, xyz] = batch;
-  for (int i = 0; i < 2000; ++i) local.block(xyz[0], xyz[1], xyz[2], n, &to);
-  const size_t before = CountingBall::calls;
-  local.block(xyz[0], xyz[1], xyz[2], n, &to);
-  EXPECT_EQ(CountingBall::calls, before);
+  bool is_left_out = false;
+  size_t before = 0;
+  for (int i = 0; i < 20000 && !is_left_out; ++i) {
+    before = CountingBall::calls;
+    local.block(xyz[0], xyz[1], xyz[2], n, &to);
+    is_left_out = CountingBall::calls == before;
+  }
+  EXPECT_TRUE(is_left_out);
   local.whole().block(xyz[0], xyz[1], xyz[2], n, &to);
   EXPECT_GT(CountingBall::calls, before);
 }

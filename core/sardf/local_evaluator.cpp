@@ -174,7 +174,8 @@ void evaluate(const Search& search, const Points<T>& points, std::span<T* const>
               const Run& run) {
   const Evaluator* program = &search.whole;
   BoundingBox box;
-  if (!points.find_box(box)) return run(*program, points, rows);
+  // Points far outside, as of shadow rays, are not worth being told apart.
+  if (!points.find_box(box) || !search.root.is_good_for(box)) return run(*program, points, rows);
   const Vec3 center = box.center();
   Cube* cube = &search.root;
   for (int level = 0; level < search.levels && cube->is_good_for(box); ++level) {

@@ -116,6 +116,17 @@ TEST(LocalEvaluator, HasTheSameBitsForWhatIsNoPlace) {
   }
 }
 
+TEST(LocalEvaluator, HasTheSameBitsAtOnePlaceManyTimes) {
+  Random r(98);
+  const LocalEvaluator local(Evaluator(balls(60, r)), unit);
+  for (const float place : {0.3f, 1.9f, -7.0f, 1e6f}) {
+    Batch<float> batch(r, 0);
+    batch.n = most;
+    for (auto& row : batch.xyz) std::fill_n(row, most, place);
+    for (int i = 0; i < 100; ++i) expect_same_values(local, batch);
+  }
+}
+
 TEST(LocalEvaluator, LeavesOutWhatIsFarAway) {
   Random r(93);
   const Expression field = balls(60, r);

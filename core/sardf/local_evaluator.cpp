@@ -31,9 +31,18 @@ constexpr size_t lanes = 16;
 // The like for gradients. They tell programs apart where one of them has NaN: there nothing may
 // depend on times, or on what was evaluated before. A few levels are made at once instead.
 constexpr double long_for_gradients = 200, long_gradient_work = 20'000;
-constexpr int gradient_levels = 6;
+constexpr int most_gradient_levels = 6;
 
 double length(const Evaluator& program) { return double(program.tape().instructions().size()); }
+
+// A surface meets 6 4^n cubes of an edge 2^-n times its own, or so: their programs shall have room,
+// even if they are hardly shorter.
+int gradient_levels(const Evaluator& whole) {
+  constexpr double most_instructions = 4e6;
+  int levels = most_gradient_levels;
+  while (levels > 1 && length(whole) * 6 * std::pow(4, levels - 1) > most_instructions) --levels;
+  return levels;
+}
 
 template <class Work>
 double seconds_of(Work work) {
@@ -137,7 +146,13 @@ class Octants {
   }
 
   Points<T> points(size_t k) const {
-    return {{&at_[0][begin[k]], &at_[1][begin[k]], &at_[2][begin[k]]}, begin[k + 1] - begin[k]};
+    const auto from = [&](size_t axis) { return at_[axis].data() + begin[k]; };
+    return {{from(0), from(1), from(2)}, begin[k + 1] - begin[k]};
+  }
+  size_t most() const {
+    size_t result = 0;
+    for (size_t k = 0; k < 8; ++k) result = std::max(result, begin[k + 1] - begin[k]);
+    return result;
   }
   std::vector<T*> results(size_t k) {
     std::vector<T*> rows;
@@ -179,16 +194,24 @@ void evaluate(const Search& search, const Points<T>& points, std::span<T* const>
   const Vec3 center = box.center();
   Cube* cube = &search.root;
   for (int level = 0; level < search.levels && cube->is_good_for(box); ++level) {
-    program = search.waits ? &cube->program_after(points.n, box, *program)
-                           : &cube->program(box, *program);
-    if (length(*program) <= local::short_program || !cube->is_tried())
+    // A cube's program is made from the one around it: what is not there yet ends the search, also
+    // if another thread is just making it.
+    const bool was_tried = !search.waits || cube->is_tried();
+    program = search.waits ? &cube->program_after(points.n, *program) : &cube->program(*program);
+    if (!was_tried || length(*program) <= local::short_program ||
+        (!search.waits && !cube->is_promising()))
       return run(*program, points, rows);
     cube = &cube->child(Cube::octant(cube->center(), center));
   }
   const double work = length(*program) * double(std::max(points.n, lanes));
-  if (points.n == 1 || cube->is_good_for(box) || work < search.long_work)
+  const Vec3 size = box.size();
+  // What would fit into the next cube, but does not, lies outside of all of them.
+  if (cube->is_good_for(box) || std::max({size[0], size[1], size[2]}) <= cube->edge() ||
+      work < search.long_work)
     return run(*program, points, rows);
   Octants<T> octants(points, center, rows.size());
+  // Numbers next to each other have none between them.
+  if (octants.most() == points.n) return run(*program, points, rows);
   for (size_t k = 0; k < 8; ++k) {
     if (octants.points(k).n > 0) evaluate<T>(search, octants.points(k), octants.results(k), run);
   }
@@ -242,8 +265,8 @@ void LocalEvaluator::gradient_block(const float* x, const float* y, const float*
   const std::array<float*, 4> rows{out, gradient[0], gradient[1], gradient[2]};
   const Points<float> points{{x, y, z}, n};
   if (root_ && n > 0 && length(whole_) >= long_for_gradients) {
-    evaluate<float>({whole_, *root_, long_gradient_work, false, gradient_levels}, points, rows,
-                    run);
+    const int levels = gradient_levels(whole_);
+    evaluate<float>({whole_, *root_, long_gradient_work, false, levels}, points, rows, run);
   } else {
     run(whole_, points, rows);
   }

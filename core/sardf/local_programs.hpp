@@ -24,13 +24,13 @@ struct Experience {
   std::atomic<int> in_vain{0}, worth_it{0};
   std::atomic<size_t> instructions{0};  // of all programs
 
-  /// Whether nothing could be left out anywhere, so far.
+  /// Whether not much could be left out anywhere, so far.
   bool is_hopeless() const {
     constexpr int enough = 9;  // the whole and its octants, say
     return in_vain.load(std::memory_order_relaxed) >= enough &&
            worth_it.load(std::memory_order_relaxed) == 0;
   }
-  /// A hundred bytes each are held for an instruction, about.
+  /// An instruction takes a hundred bytes, about; one that was narrowed (a polygon) more.
   bool is_full() const {
     constexpr size_t most_instructions = 2'000'000;
     return instructions.load(std::memory_order_relaxed) >= most_instructions;
@@ -48,13 +48,14 @@ class Cube {
   /// Where its program is good: up to half an edge around it, so that points near its border need
   /// not be told apart.
   bool is_good_for(const BoundingBox& points) const;
-  BoundingBox valid() const;
 
-  /// The program here, after n points more, in a box in the cube: `above`, that of the cube around
-  /// it, until there are enough of them, and where it cannot be shortened.
-  const Evaluator& program_after(size_t n, const BoundingBox& points, const Evaluator& above);
+  /// The program here, after n points more: `above`, that of the cube around it, until there are
+  /// enough of them and it has been made, and where not much can be left out.
+  const Evaluator& program_after(size_t n, const Evaluator& above);
   /// The same at once, so that it does not matter what was evaluated before.
-  const Evaluator& program(const BoundingBox& points, const Evaluator& above);
+  const Evaluator& program(const Evaluator& above);
+  /// Whether much can be left out here, or in a part; known when it has been tried.
+  bool is_promising() const;
   bool is_tried() const { return is_tried_.test(std::memory_order_acquire); }
 
   static size_t octant(const Vec3& center, const Vec3& point) {
@@ -62,11 +63,13 @@ class Cube {
            size_t(point[2] >= center[2]) << 2;
   }
   const Vec3& center() const { return center_; }
+  double edge() const { return 2 * half_; }
   /// An eighth of the cube; made if it is not there yet.
   Cube& child(size_t octant);
 
  private:
-  void attempt(const BoundingBox& points, const Evaluator& above);
+  BoundingBox around(double reach) const;
+  void attempt(const Evaluator& above);
 
   Vec3 center_;
   double half_, wait_;

@@ -92,6 +92,16 @@ void expect_same_values(const LocalEvaluator& local, const Batch<T>& batch) {
       ASSERT_TRUE(same(to[k][i], again[k][i])) << to[k][i] << " " << again[k][i];
 }
 
+struct Gradients {
+  float value[most], by[3][most];
+
+  template <class Of>
+  Gradients(const Of& of, const Batch<float>& batch) {
+    float* const rows[3] = {by[0], by[1], by[2]};
+    of.gradient_block(batch.xyz[0], batch.xyz[1], batch.xyz[2], batch.n, value, rows);
+  }
+};
+
 TEST(LocalEvaluator, HasTheSameBitsNearByAndFarApart) {
   Random r(91);
   const Expression field = balls(120, r), other = balls(40, r);
@@ -118,12 +128,14 @@ TEST(LocalEvaluator, HasTheSameBitsForWhatIsNoPlace) {
 
 TEST(LocalEvaluator, HasTheSameBitsAtOnePlaceManyTimes) {
   Random r(98);
-  const LocalEvaluator local(Evaluator(balls(60, r)), unit);
-  for (const float place : {0.3f, 1.9f, -7.0f, 1e6f}) {
+  const LocalEvaluator local(Evaluator(balls(300, r)), unit);
+  for (const float place : {0.3f, 1.4f, 1.9f, -7.0f, 1e6f}) {
     Batch<float> batch(r, 0);
     batch.n = most;
     for (auto& row : batch.xyz) std::fill_n(row, most, place);
     for (int i = 0; i < 100; ++i) expect_same_values(local, batch);
+    const Gradients one(local, batch), other(local.whole(), batch);
+    EXPECT_TRUE(same(one.by[0][most / 2], other.by[0][most / 2] + 0.0f));
   }
 }
 
@@ -151,16 +163,6 @@ TEST(LocalEvaluator, LeavesOutWhatIsFarAway) {
   local.whole().block(xyz[0], xyz[1], xyz[2], n, &to);
   EXPECT_GT(CountingBall::calls, before);
 }
-
-struct Gradients {
-  float value[most], by[3][most];
-
-  template <class Of>
-  Gradients(const Of& of, const Batch<float>& batch) {
-    float* const rows[3] = {by[0], by[1], by[2]};
-    of.gradient_block(batch.xyz[0], batch.xyz[1], batch.xyz[2], batch.n, value, rows);
-  }
-};
 
 // The angle is 0 where x < 0.4, with no derivative.
 Expression balls_and_step(Random& r) {
@@ -228,7 +230,7 @@ TEST(LocalPrograms, AreShorterTheSmallerTheCube) {
   size_t steps = whole.tape().instructions().size();
   for (int level = 0; level < 6; ++level) {
     ASSERT_TRUE(cube->is_good_for(place));
-    program = &cube->program_after(1, place, *program);
+    program = &cube->program_after(1, *program);
     EXPECT_LE(program->tape().instructions().size(), steps);
     steps = program->tape().instructions().size();
     cube = &cube->child(local::Cube::octant(cube->center(), place.center()));
@@ -243,9 +245,10 @@ TEST(LocalPrograms, WaitForPoints) {
   const Evaluator whole(balls(50, r));
   local::Experience experience{0};
   local::Cube cube({0.2, 0.2, 0.2}, 0.02, 100, experience);
-  const BoundingBox place{{0.2, 0.2, 0.2}, {0.21, 0.21, 0.21}};
-  EXPECT_EQ(&cube.program_after(60, place, whole), &whole);
-  EXPECT_NE(&cube.program_after(60, place, whole), &whole);
+  EXPECT_EQ(&cube.program_after(60, whole), &whole);
+  EXPECT_FALSE(cube.is_tried());
+  EXPECT_NE(&cube.program_after(60, whole), &whole);
+  EXPECT_TRUE(cube.is_tried());
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "sardf/local_programs.hpp"
 
+#include <algorithm>
 #include <memory>
 
 #include "sardf/shorten.hpp"
@@ -8,8 +9,9 @@ namespace sardf::local {
 
 namespace {
 
-// The share of instructions left out from which on it is worth it.
-constexpr double worth_it = 0.25;
+// Shares of the instructions that are left out: from which on it is worth it, and from which on
+// nothing better is looked for.
+constexpr double worth_it = 0.25, much = 0.5;
 
 double length(const Evaluator& program) { return double(program.tape().instructions().size()); }
 
@@ -59,10 +61,11 @@ void Cube::attempt(const Evaluator& above) {
   auto shorter =
       std::make_unique<const Evaluator>(Shortening(above, around(2 * half_)).shortened());
   const double own = gain_of(*shorter);
-  // Where nothing can be left out of the program for all of the cube, it may be out of that for a
+  double gain = own;
+  // Where little can be left out of the program for all of the cube, much may be out of that for a
   // small part: the one in its middle tells.
-  gain_.store(own >= worth_it ? own : gain_of(Shortening(above, around(half_ / 8)).shortened()),
-              std::memory_order_relaxed);
+  if (gain < much) gain = std::max(gain, gain_of(Shortening(above, around(half_ / 8)).shortened()));
+  gain_.store(gain, std::memory_order_relaxed);
   // Another thread may make the same.
   const Evaluator* made = nullptr;
   if (own >= worth_it && program_.compare_exchange_strong(made, shorter.get())) {

@@ -66,7 +66,9 @@ struct NormalSource {
 /// Some channels of a bake: one evaluator for all their components, and their images.
 class Group {
  public:
-  Group(std::span<const BakeChannel> channels, const Mesh& mesh, int size) : channels_(channels) {
+  /// The points lie in the box, or near it.
+  Group(std::span<const BakeChannel> channels, const BoundingBox& box, int size)
+      : channels_(channels) {
     std::vector<Expression> outputs;
     for (const BakeChannel& channel : channels) {
       const int components = components_of(channel);
@@ -74,7 +76,7 @@ class Group {
       images.back().samples.resize(size_t(size) * size * components);
       outputs.insert(outputs.end(), channel.components.begin(), channel.components.end());
     }
-    if (!outputs.empty()) evaluator_ = LocalEvaluator(Evaluator(outputs), bounds(mesh));
+    if (!outputs.empty()) evaluator_ = LocalEvaluator(Evaluator(outputs), box);
     undefined = std::vector<std::atomic<size_t>>(channels.size());
   }
 
@@ -241,8 +243,8 @@ void for_tiles(size_t tiles, const Progress& progress, double from, double to, W
 
 class Baker {
  public:
-  Baker(const baking::UvLayout& layout, const Expression& solid) : layout_(layout) {
-    const BoundingBox box = bounds(*layout.mesh);
+  Baker(const baking::UvLayout& layout, const Expression& solid)
+      : box(bounds(*layout.mesh)), layout_(layout) {
     const double length = box.diagonal();
     if (solid) solid_.emplace(Evaluator(solid), box);
     tolerance_ = static_cast<float>(on_surface * length);
@@ -276,6 +278,7 @@ class Baker {
     });
   }
 
+  const BoundingBox box;  // of the mesh
   std::vector<unsigned char> covered;
   std::atomic<size_t> found{0};  // covered texels
 
@@ -328,7 +331,7 @@ BakeReport bake(const TexelMap& texels, const Expression& solid,
     const double from = double(first) / double(channels.size());
     const double to = double(first + n) / double(channels.size());
     if (progress && !progress(from)) throw Cancelled();
-    Group group(channels.subspan(first, n), *texels.layout().mesh, texels.size());
+    Group group(channels.subspan(first, n), baker.box, texels.size());
     baker.run(group, progress, from, to);
     if (first == 0) {
       report.covered = baker.found;

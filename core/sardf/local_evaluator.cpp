@@ -16,6 +16,7 @@ namespace sardf {
 namespace {
 
 using local::Cube;
+using local::length;
 
 constexpr size_t block_size = Evaluator::block_size;
 // A program is tried when so many times the points have been evaluated that could have been
@@ -32,8 +33,6 @@ constexpr size_t lanes = 16;
 // depend on times, or on what was evaluated before. A few levels are made at once instead.
 constexpr double long_for_gradients = 200, long_gradient_work = 20'000;
 constexpr int most_gradient_levels = 6;
-
-double length(const Evaluator& program) { return double(program.tape().instructions().size()); }
 
 // A surface meets 6 4^n cubes of an edge 2^-n times its own, or so: their programs shall have room,
 // even if they are hardly shorter.
@@ -139,11 +138,11 @@ class Octants {
     std::array<uint8_t, block_size> of;
     for (size_t i = 0; i < count_; ++i) {
       of[i] = uint8_t(Cube::octant(center, points.point(i)));
-      ++begin[size_t(of[i]) + 1];
+      ++begin_[size_t(of[i]) + 1];
     }
-    for (size_t k = 0; k < 8; ++k) begin[k + 1] += begin[k];
+    for (size_t k = 0; k < 8; ++k) begin_[k + 1] += begin_[k];
     std::array<size_t, 8> next;
-    std::copy_n(begin.begin(), 8, next.begin());
+    std::copy_n(begin_.begin(), 8, next.begin());
     for (size_t i = 0; i < count_; ++i) {
       const size_t to = next[of[i]]++;
       place_[i] = uint16_t(to);
@@ -152,18 +151,18 @@ class Octants {
   }
 
   Points<T> points(size_t k) const {
-    const auto from = [&](size_t axis) { return at_[axis].data() + begin[k]; };
-    return {{from(0), from(1), from(2)}, begin[k + 1] - begin[k]};
+    const auto from = [&](size_t axis) { return at_[axis].data() + begin_[k]; };
+    return {{from(0), from(1), from(2)}, begin_[k + 1] - begin_[k]};
   }
   size_t most() const {
     size_t result = 0;
-    for (size_t k = 0; k < 8; ++k) result = std::max(result, begin[k + 1] - begin[k]);
+    for (size_t k = 0; k < 8; ++k) result = std::max(result, begin_[k + 1] - begin_[k]);
     return result;
   }
   std::vector<T*> results(size_t k) {
     std::vector<T*> rows;
     for (size_t row = 0; row < results_.size() / block_size; ++row)
-      rows.push_back(&results_[row * block_size + begin[k]]);
+      rows.push_back(&results_[row * block_size + begin_[k]]);
     return rows;
   }
   void write(std::span<T* const> rows) const {
@@ -171,10 +170,9 @@ class Octants {
       for (size_t i = 0; i < count_; ++i) rows[row][i] = results_[row * block_size + place_[i]];
   }
 
-  std::array<size_t, 9> begin{};
-
  private:
   size_t count_;
+  std::array<size_t, 9> begin_{};
   std::array<std::array<T, block_size>, 3> at_;
   std::array<uint16_t, block_size> place_;
   std::vector<T> results_;
@@ -246,6 +244,7 @@ LocalEvaluator::LocalEvaluator(Evaluator whole, const BoundingBox& box) : whole_
   const double seconds = seconds_of([&] { Shortening(whole_, box).shortened(); });
   const double per_point = seconds_per_point(whole_, box), wait = patience * seconds / per_point;
   long_work_ = worth_sorting / per_point * length(whole_);
+  gradient_levels_ = gradient_levels(whole_);
   // Of the whole box seldom anything can be left out: that shall not make the first parts wait.
   experience_ = std::make_unique<local::Experience>(wait);
   root_ = std::make_unique<Cube>(box.center(), half, wait / local::more_patience, *experience_);
@@ -271,8 +270,8 @@ void LocalEvaluator::gradient_block(const float* x, const float* y, const float*
   const std::array<float*, 4> rows{out, gradient[0], gradient[1], gradient[2]};
   const Points<float> points{{x, y, z}, n};
   if (root_ && n > 0 && length(whole_) >= long_for_gradients) {
-    const int levels = gradient_levels(whole_);
-    evaluate<float>({whole_, *root_, long_gradient_work, false, levels}, points, rows, run);
+    evaluate<float>({whole_, *root_, long_gradient_work, false, gradient_levels_}, points, rows,
+                    run);
   } else {
     run(whole_, points, rows);
   }

@@ -44,6 +44,7 @@ class LocalEvaluator {
   std::unique_ptr<local::Experience> experience_;
   std::unique_ptr<local::Cube> root_;  // none: the whole program is what evaluates
   double long_work_ = 0;               // instructions times points that are worth sorting
+  int gradient_levels_ = 0;            // of the octree
 };
 
 }  // namespace sardf

@@ -13,8 +13,6 @@ namespace {
 // nothing better is looked for.
 constexpr double worth_it = 0.25, much = 0.5;
 
-double length(const Evaluator& program) { return double(program.tape().instructions().size()); }
-
 }  // namespace
 
 Cube::Cube(const Vec3& center, double half, double wait, Experience& experience)

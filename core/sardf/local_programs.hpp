@@ -18,6 +18,11 @@ inline constexpr size_t short_program = 8;
 /// around it.
 inline constexpr double more_patience = 8;
 
+/// Instructions.
+inline double length(const Evaluator& program) {
+  return double(program.tape().instructions().size());
+}
+
 /// What all cubes of a tree have in common.
 struct Experience {
   double patience;  // points that take as long as to find out what is not needed

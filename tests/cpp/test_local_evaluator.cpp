@@ -5,7 +5,8 @@
 #include <tbb/parallel_for.h>
 
 #include <atomic>
-#include <bit>
+#include <cmath>
+#include <cstring>
 
 #include "laws.hpp"
 #include "sardf/arithmetic.hpp"

@@ -149,6 +149,7 @@ struct Equivalence {
     v(Parameter{"order", "n, the higher, the nearer to the smaller", Unit::ratio, Range::positive},
       &Equivalence::order);
   }
+  void prepare() { whole_order_ = order <= most_factors && order == int(order) ? int(order) : 0; }
   double gain(Interval, Interval) const { return 1; }
   template <class T>
   T eval(T a, T b) const {
@@ -156,9 +157,14 @@ struct Equivalence {
     return shortcut(lo <= T(0.0), lo, [&] {
       // The ratio neither overflows nor vanishes. Its limits change no value, but bound it.
       const T ratio = max(T(0.0), min(T(1.0), lo / hi));
-      return lo * pow(T(1.0) + pow(ratio, T(order)), T(-1 / order));
+      const T power = whole_order_ > 0 ? whole_power(ratio, whole_order_) : pow(ratio, T(order));
+      return lo * pow(T(1.0) + power, T(-1 / order));
     });
   }
+
+ private:
+  static constexpr int most_factors = 64;
+  int whole_order_ = 1;  // 0: `order` is not whole, or large
 };
 
 template <class... Blends>

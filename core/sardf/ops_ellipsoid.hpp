@@ -1,4 +1,4 @@
-// Ellipsoid and ellipse: exact signed distance in a fixed number of steps.
+// Ellipsoid and ellipse: exact signed distance in a bounded number of steps.
 //
 // With e the radii and y >= 0 the point in their frame, the foot of the nearest point is
 // e_i z_i, z_i = e_i y_i / (t + e_i²), where t is the largest root of G(t) = Σ z_i² = 1 (Eberly,
@@ -86,7 +86,9 @@ class EllipsoidDistance {
         g = i == 0 ? squared : g + squared;
         slope = i == 0 ? squared * inverse : slope + squared * inverse;
       }
+      const T former = s;
       s = s + max((sqrt(g) - T(1.0)) * g / slope, T(0.0));
+      if (is_at_rest(former, s)) break;
     }
     return s;
   }

@@ -1,4 +1,4 @@
-// Helix: exact distance in a fixed number of steps.
+// Helix: exact distance in a bounded number of steps.
 //
 // In its frame the curve is (r cos t, r sin t, c t), c = pitch / 2π. For a point at distance rho
 // from the axis, angle phi and height w, the squared distance to the curve point at t = phi + 2πk +
@@ -134,7 +134,9 @@ struct Helix : Feature {
       const T below = max(m - tau - kappa * sin(tau), T(0.0));
       // The slope vanishes at the triple root alone.
       const T slope = max(kappa * cos(tau) + T(1.0), T(1e-30));
+      const T former = tau;
       tau = min(tau + below / slope, high);
+      if (is_at_rest(former, tau)) break;
     }
     return tau;
   }

@@ -234,6 +234,32 @@ TEST(LanesNumber, ShortcutsSkipOnlyWhatNoLaneNeeds) {
   EXPECT_EQ(out, (std::array<float, 4>{1, 2, 3, 9}));
 }
 
+TEST(LanesNumber, RestWhenEveryLaneDoes) {
+  using L = Lanes<Baseline>;
+  const float former[] = {1, 2, 3, 4}, latter[] = {1, 2, 3, 4.5f}, broken[] = {1, 2, 3, NAN};
+  EXPECT_TRUE(is_at_rest(L::load(former), L::load(former)));
+  EXPECT_FALSE(is_at_rest(L::load(former), L::load(latter)));
+  EXPECT_FALSE(is_at_rest(L::load(broken), L::load(broken)));
+  EXPECT_TRUE(is_at_rest(0.5, 0.5));
+  EXPECT_FALSE(is_at_rest(0.5, 0.5 + 0x1p-53));
+  // A derivative may still move when the value rests.
+  using G = Gradient<double, 2>;
+  G moved = G::variable(3, 0);
+  EXPECT_TRUE(is_at_rest(moved, G::variable(3, 0)));
+  moved.d[1] = 1e-9;
+  EXPECT_FALSE(is_at_rest(moved, G::variable(3, 0)));
+  // What encloses or records takes all the steps.
+  EXPECT_FALSE(is_at_rest(Interval(1), Interval(1)));
+}
+
+TEST(RealNumber, WholePowersAreProducts) {
+  for (int n = 1; n <= 64; ++n)
+    for (const double a : {0.0, 0.3, 1.0, 1.7, -0.9})
+      EXPECT_NEAR(whole_power(a, n), std::pow(a, n), 1e-14 * std::abs(std::pow(a, n)));
+  EXPECT_EQ(whole_power(2.0, 63), 0x1p63);
+  EXPECT_TRUE(std::isnan(whole_power(nan, 3)));
+}
+
 TEST(TraceNumber, SharesEqualTerms) {
   Trace trace(2);
   const Text a = Text::at(0), b = Text::at(1);

@@ -115,6 +115,11 @@ struct Gradient {
     return chain(a, abs(a.v), select(a.v < T(0.0), T(-1.0), T(1.0)));
   }
   friend Gradient square(const Gradient& a) { return chain(a, square(a.v), a.v + a.v); }
+  friend bool is_at_rest(const Gradient& before, const Gradient& after) {
+    bool rests = is_at_rest(before.v, after.v);
+    for (int k = 0; k < N; ++k) rests = rests && is_at_rest(before.d[k], after.d[k]);
+    return rests;
+  }
   friend Gradient freeze(const Gradient& a) {
     Gradient g(0.0);
     g.v = freeze(a.v);

@@ -219,6 +219,9 @@ struct Lanes {
   }
   friend Lanes square(Lanes a) { return a * a; }
   friend Lanes freeze(Lanes a) { return a; }
+  friend bool is_at_rest(Lanes before, Lanes after) {
+    return all(before <= after && before >= after);
+  }
   friend Lanes cosine(Lanes a, Lanes b) { return a / b; }
 
   friend Lanes exp(Lanes a) {

@@ -24,6 +24,15 @@ inline double max(double a, double b) { return a > b ? a : b; }
 inline double square(double a) { return a * a; }
 inline double freeze(double a) { return a; }
 
+/// Whether an iteration that went from one value to the other, by a step that depends on nothing
+/// else, has come to rest: all its further steps would change nothing. Numbers that record or
+/// enclose a formula take all the steps.
+template <class T>
+bool is_at_rest(const T&, const T&) {
+  return false;
+}
+inline bool is_at_rest(double before, double after) { return before == after; }
+
 /// a / b for a component a of a vector of length b: a direction cosine.
 inline double cosine(double a, double b) { return a / b; }
 
@@ -58,6 +67,19 @@ T slope_of_cut(const T&, const T&) {
 template <class T>
 T slope_of_exponents(const T&, const T&) {
   return T(0.0);
+}
+
+/// a^n for n >= 1, by products.
+template <class T>
+T whole_power(const T& a, int n) {
+  int bit = 1;
+  while (bit <= n / 2) bit *= 2;
+  T power = a;
+  for (bit /= 2; bit > 0; bit /= 2) {
+    power = square(power);
+    if (n & bit) power = power * a;
+  }
+  return power;
 }
 
 /// The length of the vector with these components.

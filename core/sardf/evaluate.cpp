@@ -58,8 +58,9 @@ void load_constants(const Tape& tape, size_t n, T* registers) {
   }
 }
 
-// Else lanes lie across two cache lines, which costs twice.
-bool is_aligned(const void* memory) { return reinterpret_cast<uintptr_t>(memory) % 64 == 0; }
+bool is_aligned(const void* memory) {
+  return reinterpret_cast<uintptr_t>(memory) % cache_line == 0;
+}
 
 // Where each register lies, those that are not computed filled. Of a block of whole lanes the
 // caller's arrays are the registers of the coordinates, which no instruction writes to, and of

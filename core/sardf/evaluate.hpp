@@ -21,16 +21,19 @@ struct BoundingBox {
   double diagonal() const { return norm(size()); }
 };
 
+/// Bytes. Lanes that lie across two cache lines cost twice.
+inline constexpr size_t cache_line = 64;
+
 /// Reusable storage of one thread's evaluations.
 template <class T>
 class Scratch {
  public:
-  /// Room for n values. It begins at a cache line: lanes that lie across two cost twice.
+  /// Room for n values, from the beginning of a cache line.
   T* get(size_t n) {
-    constexpr size_t line = 64, more = line / sizeof(T);
+    constexpr size_t more = cache_line / sizeof(T);
     if (storage_.size() < n + more) storage_.resize(n + more);
-    const size_t beyond = reinterpret_cast<uintptr_t>(storage_.data()) % line;
-    return storage_.data() + (beyond == 0 ? 0 : (line - beyond) / sizeof(T));
+    const size_t beyond = reinterpret_cast<uintptr_t>(storage_.data()) % cache_line;
+    return storage_.data() + (beyond == 0 ? 0 : (cache_line - beyond) / sizeof(T));
   }
 
  private:

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "sardf/error.hpp"
 #include "sardf/render_average.hpp"
@@ -118,32 +119,36 @@ Subject make_subject(const LocalEvaluator& solid, const BoundingBox& bounds,
 
 // What a tile shows.
 struct TileHits {
-  RayTable table;         // rays that have met the solid
+  RayTables tables;       // of which the rays that have met the solid count
   std::vector<Ray> rays;  // others that may meet it or have met it
 };
 
 // Rays in single precision, until the thread's next tile; all are open where that does not serve.
 TileHits& cast(const Subject& subject, const Tile& tile, const RenderOptions& options,
                Watch& watch) {
-  // Large enough that every tile would have the system map new pages for it.
-  thread_local TileHits hits;
-  thread_local RayTable table;
-  hits.table.count = 0;
+  // Too large for a thread's own memory, and large enough that every tile would have the system map
+  // new pages for it.
+  thread_local const auto storage = std::make_unique<TileHits>();
+  TileHits& hits = *storage;
+  RayTables& tables = hits.tables;
+  tables.met.count = 0;
   hits.rays.clear();
   const std::vector<Beam> beams = find_beams(subject, tile, watch);
-  if (subject.single) {
-    begin_rays(subject, beams, options.width, options.height, table);
-    march(subject, table, single_steps, hits.table, hits.rays, watch);
-  } else {
+  if (!subject.single) {
     begin_rays(subject, beams, options.width, options.height, hits.rays);
+    return hits;
   }
+  begin_rays(subject, beams, options.width, options.height, tables.going);
+  march(subject, tables, single_steps, watch);
+  for (const RayTable* open : {&tables.unsure, &tables.going})
+    for (size_t i = 0; i < open->count; ++i) hits.rays.push_back(ray_of(subject, *open, i));
   return hits;
 }
 
 // All that have met the solid, in double, on its surface.
 std::span<const Ray> on_surface(const Subject& subject, TileHits& hits, Watch& watch) {
-  for (size_t i = 0; i < hits.table.count; ++i) {
-    hits.rays.push_back(ray_of(subject, hits.table, i));
+  for (size_t i = 0; i < hits.tables.met.count; ++i) {
+    hits.rays.push_back(ray_of(subject, hits.tables.met, i));
   }
   march(subject, hits.rays, double_steps, watch);
   march_by_intervals(subject, hits.rays, watch);
@@ -210,11 +215,16 @@ class Painter {
   // Paints the table's rays where the colours on both sides of the surface are the same; leaves the
   // others to be painted exactly.
   void paint_roughly(const Subject& subject, TileHits& hits, Watch& watch) const {
-    RayTable& table = hits.table;
-    mix_colors(subject, color_, table, watch, [&](size_t i, const std::array<float, 3>& color) {
-      float* const pixel = image_.at(table.x[i], table.y[i]);
-      std::copy(color.begin(), color.end(), pixel);
-      pixel[3] = 1;
+    RayTable& table = hits.tables.met;
+    mix_colors(subject, color_, table, watch, [&](size_t first, size_t n, const RayBlock& block) {
+      for (size_t i = 0; i < n; ++i) {
+        const size_t ray = first + i;
+        if (std::isnan(table.trial[ray])) continue;
+        float* const pixel = image_.at(int(table.x[ray]), int(table.y[ray]));
+        for (size_t channel = 0; channel < 3; ++channel)
+          pixel[channel] = block.channels[channel][i];
+        pixel[3] = 1;
+      }
     });
     for (size_t i = 0; i < table.count; ++i) {
       if (std::isnan(table.trial[i])) hits.rays.push_back(ray_of(subject, table, i));

@@ -183,8 +183,8 @@ void begin_rays(const Subject& subject, const std::vector<Beam>& beams, int widt
 
 Ray ray_of(const Subject& subject, const RayTable& table, size_t i) {
   Ray ray;
-  ray.x = table.x[i];
-  ray.y = table.y[i];
+  ray.x = int(table.x[i]);
+  ray.y = int(table.y[i]);
   ray.line = subject.rays.through(ray.x + 0.5, ray.y + 0.5);
   ray.per_length = double(table.per_length[i]);
   const auto depth = [&](float t) { return subject.frame.begin + double(t); };

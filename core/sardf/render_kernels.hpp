@@ -2,6 +2,8 @@
 // go on are told in render_march.cpp: here they run for the width of an instruction set.
 #pragma once
 
+#include <cstdint>
+
 #include "sardf/numbers/lanes.hpp"
 #include "sardf/render_table.hpp"
 
@@ -65,10 +67,8 @@ struct RayKernelsOf {
       L(0.0).store(&table.before_value[at]);
       select(inside && enters <= leaves, number(RayTable::going), number(RayTable::missed))
           .store(&table.state[at]);
-    }
-    for (size_t k = 0; k < RaySquare::rays; ++k) {
-      table.x[start + k] = uint16_t(square.left + int(k) % RaySquare::edge);
-      table.y[start + k] = uint16_t(square.top + int(k) / RaySquare::edge);
+      (L(double(square.left)) + column_here).store(&table.x[at]);
+      (L(double(square.top)) + row_here).store(&table.y[at]);
     }
     table.count = start + RaySquare::rays;
   }
@@ -158,6 +158,52 @@ struct RayKernelsOf {
     return select(helps, guess, surest);
   }
 
+  static void copy(const RayTable& from, RayTable::State which, RayTable& to) {
+    const size_t at = &from == &to ? 0 : to.count;
+    to.count = at + copy_rows(from, which, to, at);
+  }
+
+#if defined(__AVX512F__)
+  /// Of whole lanes the chosen ones move together. What is written behind them is written again, or
+  /// has no meaning.
+  static size_t copy_rows(const RayTable& from, RayTable::State which, RayTable& to, size_t at) {
+    static_assert(width == 16);
+    std::array<__mmask16, RayTable::room / width> chosen;
+    size_t copied = 0;
+    const size_t groups = (from.count + width - 1) / width;
+    for (size_t g = 0; g < groups; ++g) {
+      const L state = L::load(&from.state[g * width]);
+      const Mask is = state <= number(which) && state >= number(which);
+      const size_t left = from.count - g * width;
+      chosen[g] = left < width ? __mmask16(is.bits & ((1u << left) - 1)) : is.bits;
+      copied += size_t(__builtin_popcount(chosen[g]));
+    }
+    if (copied == 0) return 0;
+    RayTable::for_rows(from, to, [&](const RayTable::Row& row, RayTable::Row& other) {
+      float* next = &other[at];
+      for (size_t g = 0; g < groups; ++g) {
+        const __m512 all = _mm512_loadu_ps(&row[g * width]);
+        _mm512_storeu_ps(next, _mm512_maskz_compress_ps(chosen[g], all));
+        next += __builtin_popcount(chosen[g]);
+      }
+    });
+    return copied;
+  }
+#else
+  static size_t copy_rows(const RayTable& from, RayTable::State which, RayTable& to, size_t at) {
+    std::array<uint16_t, RayTable::room> chosen;
+    size_t copied = 0;
+    for (size_t i = 0; i < from.count; ++i) {
+      chosen[copied] = uint16_t(i);
+      copied += from.state_of(i) == which;
+    }
+    RayTable::for_rows(from, to, [&](const RayTable::Row& row, RayTable::Row& other) {
+      for (size_t k = 0; k < copied; ++k) other[at + k] = row[chosen[k]];
+    });
+    return copied;
+  }
+#endif
+
   static void place_aside(const RayFrame& frame, RayTable& table, size_t first, size_t n,
                           float aside, size_t behind, RayBlock& block) {
     for (size_t k = 0; k < n; k += width) {
@@ -194,7 +240,7 @@ struct RayKernelsOf {
     }
   }
 
-  static constexpr RayKernels all_kernels{&begin, &place, &use, &place_aside, &mix};
+  static constexpr RayKernels all_kernels{&begin, &place, &use, &copy, &place_aside, &mix};
 };
 
 }  // namespace sardf::rendering

@@ -100,26 +100,23 @@ void end_room(RayTable& table) {
 
 }  // namespace
 
-void march(const Subject& subject, RayTable& table, int most_steps, RayTable& found,
-           std::vector<Ray>& open, Watch& watch) {
+void march(const Subject& subject, RayTables& rays, int most_steps, Watch& watch) {
   // Ended rays cost as much as others until they are taken out, which costs more than a step.
   constexpr double crowded = 0.75;
+  const RayKernels& kernels = ray_kernels();
   const auto take_ended = [&] {
-    table.keep_going([&](size_t i) {
-      if (table.state_of(i) == RayTable::met) found.append(table, i);
-      if (table.state_of(i) == RayTable::unsure) open.push_back(ray_of(subject, table, i));
-    });
-    end_room(table);
+    kernels.copy(rays.going, RayTable::met, rays.met);
+    kernels.copy(rays.going, RayTable::unsure, rays.unsure);
+    kernels.copy(rays.going, RayTable::going, rays.going);
+    end_room(rays.going);
   };
-  found.count = 0;
+  rays.met.count = rays.unsure.count = 0;
   take_ended();
-  for (int steps = 0; steps < most_steps && table.count > 0; ++steps) {
-    const size_t going = step(subject, table, watch);
-    if (double(going) < crowded * double(table.count)) take_ended();
+  for (int steps = 0; steps < most_steps && rays.going.count > 0; ++steps) {
+    const size_t going = step(subject, rays.going, watch);
+    if (double(going) < crowded * double(rays.going.count)) take_ended();
   }
   take_ended();
-  for (size_t i = 0; i < table.count; ++i) open.push_back(ray_of(subject, table, i));
-  table.count = 0;
 }
 
 void march(const Subject& subject, std::span<Ray> rays, int most_steps, Watch& watch) {

@@ -192,7 +192,7 @@ bool single_does(const BoundingBox& box, const Evaluator& color) {
 }
 
 void mix_colors(const Subject& subject, const LocalEvaluator& color, RayTable& table, Watch& watch,
-                const std::function<void(size_t, const std::array<float, 3>&)>& use) {
+                const std::function<void(size_t first, size_t n, const RayBlock&)>& use) {
   constexpr size_t half = RayBlock::capacity / 2;
   thread_local RayBlock block;
   float* const value = block.value;
@@ -210,10 +210,7 @@ void mix_colors(const Subject& subject, const LocalEvaluator& color, RayTable& t
     subject.solid.block(block.xyz[0], block.xyz[1], block.xyz[2], behind + n, &value);
     color.block(block.xyz[0], block.xyz[1], block.xyz[2], behind + n, channels);
     ray_kernels().mix(subject.frame, table, first, n, float(equal_colors), behind, block);
-    for (size_t i = 0; i < n; ++i) {
-      if (std::isnan(table.trial[first + i])) continue;
-      use(first + i, {channels[0][i], channels[1][i], channels[2][i]});
-    }
+    use(first, n, block);
   }
 }
 

@@ -29,7 +29,7 @@ void find_colors(const Subject& subject, const LocalEvaluator& color, std::span<
 /// The colours of the table's rays, all of which have met the solid: use(i, colour) where both
 /// sides of the surface have the same; the trial of the others becomes NaN.
 void mix_colors(const Subject& subject, const LocalEvaluator& color, RayTable& table, Watch& watch,
-                const std::function<void(size_t, const std::array<float, 3>&)>& use);
+                const std::function<void(size_t first, size_t n, const RayBlock&)>& use);
 
 /// Lights the colours: a key light with a soft shadow and two without, placed as in povray_gen's
 /// lit picture, and a share of the sky by distances along the normal.

@@ -33,7 +33,7 @@ struct Subject {
 
 /// Coordinates and values of up to `capacity` points as arrays.
 template <class T>
-struct Block {
+struct alignas(cache_line) Block {
   static constexpr size_t capacity = Evaluator::block_size;
   T xyz[3][capacity], value[capacity];
 
@@ -92,11 +92,13 @@ void begin_rays(const Subject& subject, const std::vector<Beam>& beams, int widt
 /// matter, it is on its way from where it is proven clear, and what it meets is seen anew.
 Ray ray_of(const Subject& subject, const RayTable& table, size_t i);
 
-/// Moves the table's rays on, at most `most_steps` steps each, until they have missed the solid:
-/// those that are sure to have met it come into `found`, those that are not sure or still on their
-/// way into `open`.
-void march(const Subject& subject, RayTable& table, int most_steps, RayTable& found,
-           std::vector<Ray>& open, Watch& watch);
+/// Rays of a tile: on their way, sure to have met the solid, and such that may have met it.
+struct RayTables {
+  RayTable going, met, unsure;
+};
+/// Moves the rays that are going on, at most `most_steps` steps each, until they have missed the
+/// solid and are gone, or come into one of the other tables, in which nothing else is left.
+void march(const Subject& subject, RayTables& rays, int most_steps, Watch& watch);
 /// The like for rays that are on their way, in double.
 void march(const Subject& subject, std::span<Ray> rays, int most_steps, Watch& watch);
 

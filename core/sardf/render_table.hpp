@@ -10,7 +10,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 
 #include "sardf/evaluate.hpp"
 
@@ -45,12 +44,13 @@ struct RaySquare {
 };
 
 /// Rays of a tile, by numbers. Whole blocks are worked on: what is behind `count` has no meaning.
-struct RayTable {
+struct alignas(cache_line) RayTable {
   static constexpr size_t capacity = 32 * 32, room = capacity + 16;
   using Row = std::array<float, room>;
   enum State : int { going, missed, met, unsure };
 
   size_t count = 0;
+  Row x, y;  // of the pixel, in the picture
   std::array<Row, 3> from, along;
   Row per_length;            // at most the depth that a unit of length along the ray makes
   Row end;                   // the ray leaves the box before
@@ -59,49 +59,26 @@ struct RayTable {
   Row before, before_value;  // the last sample that lies outside; the value 0: none
   Row beyond, beyond_value;  // the sample that lies inside, or may do so
   Row state;                 // a State
-  std::array<uint16_t, room> x, y;
 
   State state_of(size_t i) const { return State(int(state[i])); }
-  /// Copies a ray of another table to the end of this one.
-  void append(const RayTable& other, size_t i);
-  /// Leaves those that are going; calls leave(i) for each of the others first.
-  template <class Leave>
-  void keep_going(Leave leave);
-
- private:
-  void move(size_t to, const RayTable& other, size_t i) {
+  /// use(a, b) for each row of two tables.
+  template <class Use>
+  static void for_rows(const RayTable& one, RayTable& other, Use use) {
     for (size_t axis = 0; axis < 3; ++axis) {
-      from[axis][to] = other.from[axis][i];
-      along[axis][to] = other.along[axis][i];
+      use(one.from[axis], other.from[axis]);
+      use(one.along[axis], other.along[axis]);
     }
-    for (const auto row : {&RayTable::per_length, &RayTable::end, &RayTable::clear,
-                           &RayTable::trial, &RayTable::before, &RayTable::before_value,
-                           &RayTable::beyond, &RayTable::beyond_value, &RayTable::state}) {
-      (this->*row)[to] = (other.*row)[i];
+    for (const auto row :
+         {&RayTable::x, &RayTable::y, &RayTable::per_length, &RayTable::end, &RayTable::clear,
+          &RayTable::trial, &RayTable::before, &RayTable::before_value, &RayTable::beyond,
+          &RayTable::beyond_value, &RayTable::state}) {
+      use(one.*row, other.*row);
     }
-    x[to] = other.x[i];
-    y[to] = other.y[i];
   }
 };
 
-inline void RayTable::append(const RayTable& other, size_t i) { move(count++, other, i); }
-
-template <class Leave>
-void RayTable::keep_going(Leave leave) {
-  size_t kept = 0;
-  for (size_t i = 0; i < count; ++i) {
-    if (state_of(i) != going) {
-      leave(i);
-    } else {
-      if (kept < i) move(kept, *this, i);
-      ++kept;
-    }
-  }
-  count = kept;
-}
-
 /// Points of a block and what is there.
-struct RayBlock {
+struct alignas(cache_line) RayBlock {
   static constexpr size_t capacity = Evaluator::block_size;
   float xyz[3][capacity], value[capacity];
   float channels[3][capacity];
@@ -118,6 +95,9 @@ struct RayKernels {
   /// where the frame's slope tells. The number of rays that are still going.
   size_t (*use)(const RayFrame&, RayTable&, size_t first, size_t n, const float* value,
                 const float* reach);
+  /// Copies the rays that are in a state to the end of another table, or within their own to its
+  /// beginning and drops all the others; in their order.
+  void (*copy)(const RayTable& from, RayTable::State which, RayTable& to);
   /// `trial` becomes where the surface is expected between `before` and `beyond`; the places
   /// `aside` before it, and from `behind` on (a multiple of 16, not less than n) those behind it.
   void (*place_aside)(const RayFrame&, RayTable&, size_t first, size_t n, float aside,

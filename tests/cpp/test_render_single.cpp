@@ -141,5 +141,45 @@ TEST(RenderSingle, TheWidestLanesGiveTheSameBits) {
   }
 }
 
+// One ray after the other.
+void copy_one_by_one(const RayTable& from, RayTable::State which, RayTable& to) {
+  size_t at = &from == &to ? 0 : to.count;
+  for (size_t i = 0; i < from.count; ++i) {
+    if (from.state_of(i) != which) continue;
+    RayTable::for_rows(from, to, [&](const auto& row, auto& other) { other[at] = row[i]; });
+    ++at;
+  }
+  to.count = at;
+}
+
+TEST(RenderSingle, RaysInAStateAreCopiedInTheirOrder) {
+  const auto from = std::make_unique<RayTable>(), to = std::make_unique<RayTable>();
+  const auto expected = std::make_unique<RayTable>();
+  const auto expect_same = [&] {
+    ASSERT_EQ(to->count, expected->count);
+    RayTable::for_rows(*to, *expected, [&](const auto& row, auto& other) {
+      EXPECT_TRUE(same(row, other, expected->count));
+    });
+  };
+  for (const auto* kernels :
+       {&rendering::RayKernelsOf<Baseline>::all_kernels, &rendering::ray_kernels()}) {
+    for (int k = 0; k < laws::effort(200); ++k) {
+      Random r{uint64_t(k)};
+      fill(r, *from);
+      for (size_t i = 0; i < from->count; ++i) from->x[i] = float(i), from->y[i] = float(k);
+      *expected = *to = *from;
+      from->count = 1 + r.below(64);
+      const auto which = RayTable::State(r.below(4));
+      kernels->copy(*from, which, *to);
+      copy_one_by_one(*from, which, *expected);
+      expect_same();
+      *expected = *to = *from;
+      kernels->copy(*to, which, *to);
+      copy_one_by_one(*expected, which, *expected);
+      expect_same();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sardf

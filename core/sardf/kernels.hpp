@@ -30,7 +30,7 @@ template <class Op, class Isa>
 struct KernelsOf {
   static constexpr int arity = Op::arity;
   using L = Lanes<Isa>;
-  // A copy stays in registers, since results cannot be written to it.
+  // A copy stays in registers, since results cannot be written to it; so do those of pointers.
   using Own = std::conditional_t<std::is_trivially_copyable_v<Op>, Op, const Op&>;
 
   template <class T, size_t... I>
@@ -40,9 +40,11 @@ struct KernelsOf {
 
   static void value(const void* object, const float* const* in, float* out, size_t n) {
     const Own op = *static_cast<const Op*>(object);
+    std::array<const float*, arity> from;
+    for (int k = 0; k < arity; ++k) from[k] = in[k];
     for (size_t i = 0; i < n; i += L::width) {
       std::array<L, arity> at;
-      for (int k = 0; k < arity; ++k) at[k] = L::load(in[k] + i);
+      for (int k = 0; k < arity; ++k) at[k] = L::load(from[k] + i);
       call(op, at.data(), std::make_index_sequence<arity>()).store(out + i);
     }
   }

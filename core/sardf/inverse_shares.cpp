@@ -34,19 +34,41 @@ Expression rooted(const Expression& u) {
   return function("sqrt", {function("max", {u, constant(least_rooted)})});
 }
 
-template <int N>
-std::vector<Expression> shares_of(std::vector<Expression> u, int exponent, double least) {
-  InverseShare<N> op;
+template <int N, int I>
+OperationPointer share(int exponent, double least) {
+  InverseShare<N, I> op;
   op.exponent = exponent;
   op.least = least;
-  const OperationPointer share = make_operation(op);
-  std::vector<Expression> shares;
-  for (size_t i = 0; i < N; ++i) {
-    std::swap(u[0], u[i]);
-    shares.push_back(call(share, u));
-    std::swap(u[0], u[i]);
+  return make_operation(op);
+}
+
+template <int... I>
+std::vector<Expression> shares_of(const std::vector<Expression>& u, int exponent, double least,
+                                  std::integer_sequence<int, I...>) {
+  return {call(share<sizeof...(I), I>(exponent, least), u)...};
+}
+
+constexpr size_t most_summed = 4;
+
+template <int N>
+OperationPointer sum_with(std::span<const double> factors) {
+  WeightedSum<N> op;
+  std::copy_n(factors.begin(), N, op.factors.begin());
+  return make_operation(op);
+}
+
+// Of at most most_summed.
+Expression sum_of(std::span<const Expression> values, std::span<const double> factors) {
+  switch (values.size()) {
+    case 1:
+      return values[0] * constant(factors[0]);
+    case 2:
+      return call(sum_with<2>(factors), values);
+    case 3:
+      return call(sum_with<3>(factors), values);
+    default:
+      return call(sum_with<4>(factors), values);
   }
-  return shares;
 }
 
 }  // namespace
@@ -65,25 +87,24 @@ std::vector<Expression> inverse_shares(std::vector<Expression> u, double exponen
     least *= least;
     for (Expression& each : u) each = squared(each);
   }
-  return n == 2   ? shares_of<2>(u, power, least)
-         : n == 3 ? shares_of<3>(u, power, least)
-                  : shares_of<4>(u, power, least);
+  return n == 2   ? shares_of(u, power, least, std::make_integer_sequence<int, 2>())
+         : n == 3 ? shares_of(u, power, least, std::make_integer_sequence<int, 3>())
+                  : shares_of(u, power, least, std::make_integer_sequence<int, 4>());
 }
 
 Expression weighted_sum(std::span<const Expression> values, std::span<const double> factors) {
-  std::vector<size_t> counted;
-  for (size_t i = 0; i < values.size(); ++i)
-    if (factors[i] != 0) counted.push_back(i);
-  Expression total = constant(0);
-  size_t next = 0;
-  for (; next + 3 <= counted.size(); next += 3) {
-    const size_t a = counted[next], b = counted[next + 1], c = counted[next + 2];
-    WeightedSum op;
-    op.factors = {factors[a], factors[b], factors[c]};
-    total = total + call(make_operation(op), {values[a], values[b], values[c]});
+  std::vector<Expression> counted;
+  std::vector<double> by;
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (factors[i] == 0) continue;
+    counted.push_back(values[i]);
+    by.push_back(factors[i]);
   }
-  for (; next < counted.size(); ++next)
-    total = total + values[counted[next]] * constant(factors[counted[next]]);
+  Expression total = constant(0);
+  for (size_t next = 0; next < by.size(); next += most_summed) {
+    const size_t n = std::min(most_summed, by.size() - next);
+    total = total + sum_of(std::span(counted).subspan(next, n), std::span(by).subspan(next, n));
+  }
   return total;
 }
 

@@ -14,7 +14,7 @@ namespace sardf {
 /// 0 these share evenly. A distance beyond 1e37, for even k beyond 3e18, counts as that.
 std::vector<Expression> inverse_shares(std::vector<Expression> u, double exponent, double least);
 
-/// Σ factor × value, three terms in one operation; terms whose factor is 0 are left out.
+/// Σ factor × value, up to four terms in one operation; terms whose factor is 0 are left out.
 Expression weighted_sum(std::span<const Expression> values, std::span<const double> factors);
 
 }  // namespace sardf

@@ -58,10 +58,8 @@ constexpr Parameter direction_of(const char* name, const char* doc) {
 inline void append_numbers(std::vector<double>& to, double a) { to.push_back(a); }
 inline void append_numbers(std::vector<double>& to, bool a) { to.push_back(a); }
 inline void append_numbers(std::vector<double>& to, int a) { to.push_back(a); }
-inline void append_numbers(std::vector<double>& to, const Vec2& a) {
-  to.insert(to.end(), a.begin(), a.end());
-}
-inline void append_numbers(std::vector<double>& to, const Vec3& a) {
+template <size_t N>
+void append_numbers(std::vector<double>& to, const std::array<double, N>& a) {
   to.insert(to.end(), a.begin(), a.end());
 }
 inline void append_numbers(std::vector<double>& to, const Axis& a) {

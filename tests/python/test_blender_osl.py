@@ -117,15 +117,17 @@ def test_outputs_have_names_of_their_own():
 
 
 def operations():
-    """The names of all operations, as their structs say them; blends have three, shares are two
-    or more."""
+    """The names of all operations, as their structs say them; blends have three, shares and sums
+    are of two or more."""
     names = set()
     for header in (ROOT / "core/sardf").glob("ops_*.hpp"):
         names |= set(re.findall(r'name = "(\w+)"', header.read_text()))
     blends = {"sardf", "sardf_c1", "smooth", "r_function", "min_max"}
-    assert blends | {"inverse_share_"} < names
+    numbered = {"inverse_share_", "weighted_sum_"}
+    assert blends | numbered < names
     booleans = {f"{blend}_{join}" for blend in blends for join in ("union", "difference")}
-    return names - blends - {"inverse_share_"} | booleans | {"inverse_share_3"}
+    of_three = {"inverse_share_3_1", "inverse_share_3_2", "inverse_share_3_3", "weighted_sum_3"}
+    return names - blends - numbered | booleans | of_three
 
 
 def test_cycles_computes_what_the_core_computes(fields, tmp_path):

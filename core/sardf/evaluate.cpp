@@ -35,6 +35,28 @@ void run(const Instruction& i, const double* const* in, double* out, double* con
   i.operation->partials(in, out, by, n);
 }
 
+// Evaluates an instruction, or those that one call evaluates from it on, and returns their number.
+// Register r lies at at[r].
+size_t run_from(const Instruction* first, const float* const* in, float* const* at, size_t n) {
+  const size_t count = first->together;
+  if (count == 1) {
+    run(*first, in, at[first->out], n);
+    return count;
+  }
+  std::array<const void*, most_together> objects;
+  std::array<float*, most_together> out;
+  for (size_t k = 0; k < count; ++k) {
+    objects[k] = first[k].object;
+    out[k] = at[first[k].out];
+  }
+  first->kernels->together->value(objects.data(), in, out.data(), n);
+  return count;
+}
+size_t run_from(const Instruction* i, const double* const* in, double* const* at, size_t n) {
+  run(*i, in, at[i->out], n);
+  return 1;
+}
+
 template <class T>
 T* scratch(size_t n) {
   thread_local Scratch<T> storage;
@@ -90,10 +112,12 @@ T* const* place_registers(const Tape& tape, const T* const* xyz, size_t n, T* co
 template <class T>
 void evaluate_block(const Tape& tape, const T* const* xyz, size_t n, T* const* out) {
   T* const* at = place_registers(tape, xyz, n, out);
-  for (const Instruction& i : tape.instructions()) {
+  const Instruction* step = tape.instructions().data();
+  const Instruction* const end = step + tape.instructions().size();
+  while (step != end) {
     std::array<const T*, max_arity> in;
-    for (size_t k = 0; k < in.size(); ++k) in[k] = at[i.in[k]];
-    run(i, in.data(), at[i.out], padded<T>(n));
+    for (size_t k = 0; k < in.size(); ++k) in[k] = at[step->in[k]];
+    step += run_from(step, in.data(), at, padded<T>(n));
   }
   for (size_t k = 0; k < tape.outputs().size(); ++k) {
     const T* result = at[tape.outputs()[k]];

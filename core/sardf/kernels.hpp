@@ -26,6 +26,43 @@ enum class InstructionSet { baseline, avx2, avx512 };
 InstructionSet instruction_set();
 std::string instruction_set_name(InstructionSet set);
 
+/// The kernel of a family of operations. Op::Family is Op itself or its base, and has
+///   static constexpr int arity, together;     how many operations are evaluated by one call
+///   template <class T, class Put>
+///   static void results(const Family* ops, const std::array<T, arity>& in, Put put);
+///                                             put(result, k) for each of ops, with its very bits;
+///                                             an array of results would go through memory
+template <class Family, class Isa>
+struct TogetherOf {
+  using L = Lanes<Isa>;
+  static constexpr int size = Family::together;
+  static_assert(size <= most_together);
+  // Objects of the family are read as its own.
+  static_assert(std::is_standard_layout_v<Family> && std::is_trivially_copyable_v<Family>);
+
+  static void value(const void* const* objects, const float* const* in, float* const* out,
+                    size_t n) {
+    Family ops[size];
+    std::array<const float*, Family::arity> from;
+    std::array<float*, size> to;
+    for (int k = 0; k < Family::arity; ++k) from[k] = in[k];
+    for (int k = 0; k < size; ++k) {
+      ops[k] = *static_cast<const Family*>(objects[k]);
+      to[k] = out[k];
+    }
+    for (size_t i = 0; i < n; i += L::width) {
+      std::array<L, Family::arity> at;
+      for (int k = 0; k < Family::arity; ++k) at[k] = L::load(from[k] + i);
+      Family::results(ops, at, [&](const L& result, size_t k) { result.store(to[k] + i); });
+    }
+  }
+
+  static constexpr Together table{&value, size};
+};
+
+template <class Op>
+concept HasFamily = requires { typename Op::Family; };
+
 template <class Op, class Isa>
 struct KernelsOf {
   static constexpr int arity = Op::arity;
@@ -62,7 +99,16 @@ struct KernelsOf {
     }
   }
 
-  static constexpr Kernels table{&value, &partials};
+  static constexpr Kernels make_table() {
+    Kernels made{&value, &partials};
+    if constexpr (HasFamily<Op>) {
+      static_assert(std::is_standard_layout_v<Op>);
+      made.together = &TogetherOf<typename Op::Family, Isa>::table;
+    }
+    if constexpr (requires { Op::place; }) made.place = Op::place;
+    return made;
+  }
+  static constexpr Kernels table = make_table();
 };
 
 /// One term of the chain rule: outer = by * inner, or outer += by * inner, for n points, n a

@@ -69,6 +69,18 @@ struct Fate {
   std::array<Demand, max_arity> demand;
 };
 
+/// Bulk evaluation of several operations of the same inputs by one call, for a family of operations
+/// that share steps, or inputs that are read once.
+struct Together {
+  /// out[k] is the result of ops[k].
+  using Value = void (*)(const void* const* ops, const float* const* in, float* const* out,
+                         size_t n);
+  Value value = nullptr;
+  int size = 0;  // how many
+};
+/// Most operations that one call evaluates.
+inline constexpr int most_together = 4;
+
 /// Bulk evaluation of n points, n a multiple of 16. `in` and `out` are arrays of n.
 struct Kernels {
   using Value = void (*)(const void* op, const float* const* in, float* out, size_t n);
@@ -77,6 +89,11 @@ struct Kernels {
                             float* const* partial, size_t n);
   Value value = nullptr;
   Partials partials = nullptr;
+  /// How it is evaluated with others of its family; null where it has none.
+  const Together* together = nullptr;
+  /// Its place among them, where they are parts of one formula and have equal parameters; -1 where
+  /// any of the family will do.
+  int place = -1;
 };
 
 class Operation;

@@ -31,6 +31,8 @@
 //                                      rounding error, in ulps of the largest magnitude of
 //                                      parameters and result and, for a distance, of arguments
 //   static constexpr bool cancels = true;          for a monotone one: of arguments, too
+//   using Family = ...;                with whom it is evaluated together (TogetherOf, kernels.hpp)
+//   static constexpr int place;        its place there, if all are parts of one formula
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,8 @@
 #include "sardf/tape.hpp"
 
+#include <algorithm>
+#include <map>
+#include <tuple>
 #include <unordered_map>
 
 #include "sardf/operation_of.hpp"
@@ -39,11 +42,15 @@ class CodeOf {
     source_->expressions.assign(outputs.begin(), outputs.end());
     value_.reserve(order_.size());
     place_constants();
+    find_families();
     for (const Node* node : order_) {
       if (node->type != Node::Type::operation) continue;
-      Code::Step step{node->operation.get(), {}};
-      for (int i = 0; i < node->arity; ++i) step.in[i] = value_of(node->inputs[i].get());
-      value_[node] = append(step);
+      if (!node->operation->kernels().together) {
+        append(node);
+      } else if (!value_.contains(node)) {
+        // Those that are evaluated together stand together.
+        for (const Node* member : families_.at(family_of(*node))) append(member);
+      }
     }
     for (const Expression& output : outputs) code_.outputs.push_back(value_of(output.get()));
     code_.source = source_;
@@ -63,6 +70,37 @@ class CodeOf {
     }
   }
 
+  // What nodes that can be evaluated together have in common: their kernel, their inputs and, where
+  // they are parts of one formula, their parameters.
+  using Family =
+      std::tuple<const Together*, std::array<const Node*, max_arity>, std::vector<double>>;
+
+  static Family family_of(const Node& node) {
+    const Kernels& kernels = node.operation->kernels();
+    std::array<const Node*, max_arity> inputs{};
+    for (int i = 0; i < node.arity; ++i) inputs[i] = node.inputs[i].get();
+    return {kernels.together, inputs,
+            kernels.place < 0 ? std::vector<double>() : node.operation->numbers()};
+  }
+
+  void find_families() {
+    for (const Node* node : order_) {
+      if (node->type != Node::Type::operation || !node->operation->kernels().together) continue;
+      families_[family_of(*node)].push_back(node);
+    }
+    const auto place = [](const Node* node) { return node->operation->kernels().place; };
+    for (auto& [family, nodes] : families_) {
+      std::stable_sort(nodes.begin(), nodes.end(),
+                       [&](const Node* a, const Node* b) { return place(a) < place(b); });
+    }
+  }
+
+  void append(const Node* node) {
+    Code::Step step{node->operation.get(), {}};
+    for (int i = 0; i < node->arity; ++i) step.in[i] = value_of(node->inputs[i].get());
+    value_[node] = append(step);
+  }
+
   uint32_t append(const Code::Step& step) {
     code_.steps.push_back(step);
     return uint32_t(2 + code_.constants.size() + code_.steps.size());
@@ -78,8 +116,30 @@ class CodeOf {
   std::vector<const Node*> order_;
   std::shared_ptr<Source> source_;
   std::unordered_map<const Node*, uint32_t> value_;
+  std::map<Family, std::vector<const Node*>> families_;
   Code code_;
 };
+
+// Whether the instruction is number k of those that are evaluated together with the first.
+bool is_together(const Instruction& first, const Instruction& instruction, size_t k) {
+  if (instruction.kernels->together != first.kernels->together || instruction.in != first.in)
+    return false;
+  const int place = instruction.kernels->place;
+  return place < 0 ||
+         (place == int(k) && instruction.operation->numbers() == first.operation->numbers());
+}
+
+void find_together(std::vector<Instruction>& instructions) {
+  for (size_t i = 0; i < instructions.size(); i += instructions[i].together) {
+    Instruction& first = instructions[i];
+    const Together* const together = first.kernels->together;
+    if (!together || size_t(together->size) > instructions.size() - i) continue;
+    const size_t size = size_t(together->size);
+    size_t k = 0;
+    while (k < size && is_together(first, instructions[i + k], k)) ++k;
+    if (k == size) first.together = uint32_t(size);
+  }
+}
 
 }  // namespace
 
@@ -129,6 +189,7 @@ Tape::Tape(const Code& code) : source_(code.source), outputs_(code.outputs) {
   for (uint32_t& value : outputs_) {
     if (value >= first) value = place[value - first];
   }
+  find_together(instructions_);
 }
 
 }  // namespace sardf

@@ -17,6 +17,9 @@ struct Instruction {
   const void* object;
   std::array<uint32_t, max_arity> in;
   uint32_t out;
+  // How many instructions from this one on a single call may evaluate (Kernels::together): 1 or, at
+  // the first of several, their number.
+  uint32_t together = 1;
 };
 
 /// A program whose values are numbered: 0, 1, 2 are x, y, z, then come the constants, then the

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdlib>
 #include <iostream>
+#include <map>
 
 #include "laws.hpp"
 #include "sardf/kernels.hpp"
@@ -78,6 +79,79 @@ TEST(InstructionSets, AgreeOnAnyBitsInEveryOperation) {
       }
     }
   });
+}
+
+/// The listed operations that can be evaluated together, in the order of their places.
+std::vector<std::vector<laws::ListedOperation>> families() {
+  std::map<const Together*, std::vector<laws::ListedOperation>> all;
+  for (const laws::ListedOperation& listed : laws::listed_operations()) {
+    const Kernels& kernels = *listed_kernels(InstructionSet::baseline, listed.name);
+    if (!kernels.together) continue;
+    auto& family = all[kernels.together];
+    EXPECT_EQ(kernels.place, kernels.place < 0 ? -1 : int(family.size())) << listed.name;
+    family.push_back(listed);
+  }
+  std::vector<std::vector<laws::ListedOperation>> out;
+  for (const auto& [kernel, family] : all) out.push_back(family);
+  return out;
+}
+
+/// As many as one call evaluates: parts of one formula with equal parameters, or any of one name.
+std::vector<OperationPointer> members(const std::vector<laws::ListedOperation>& family, Random& r) {
+  const Kernels& kernels = *listed_kernels(InstructionSet::baseline, family[0].name);
+  const Random drawn = r;
+  std::vector<OperationPointer> all;
+  for (size_t k = 0; k < size_t(kernels.together->size); ++k) {
+    Random again = drawn;
+    all.push_back(kernels.place < 0 ? family[0].random(r) : family.at(k).random(again));
+  }
+  return all;
+}
+
+/// Ordinary distances, or any floats, some of them equal.
+std::array<Row, max_arity> arguments(Random& r) {
+  const bool ordinary = r.chance(0.5);
+  std::array<Row, max_arity> in;
+  for (size_t i = 0; i < points; ++i) {
+    for (size_t k = 0; k < in.size(); ++k) {
+      in[k][i] = ordinary ? float(r.uniform(0.5, 6)) : any_float(r);
+      if (!ordinary && r.chance(0.5)) in[k][i] = std::abs(in[k][i]);
+      if (k > 0 && r.chance(0.2)) in[k][i] = in[k - 1][i];
+    }
+  }
+  return in;
+}
+
+TEST(InstructionSets, OperationsTogetherGiveTheBitsOfEach) {
+  Random r(85);
+  const auto all = families();
+  EXPECT_EQ(all.size(), 6u);  // shares of two, three and four distances, and as many sums
+  for (int i = 0; i < laws::effort(300); ++i) {
+    const std::vector<OperationPointer> ops = members(all[size_t(i) % all.size()], r);
+    const std::array<Row, max_arity> in = arguments(r);
+    std::array<const float*, max_arity> at{};
+    std::array<const void*, most_together> objects{};
+    std::array<Row, most_together> together;
+    std::array<float*, most_together> out{};
+    for (size_t k = 0; k < size_t(ops[0]->info().arity); ++k) at[k] = in[k].data();
+    for (size_t k = 0; k < ops.size(); ++k) {
+      objects[k] = ops[k]->object();
+      out[k] = together[k].data();
+    }
+    for (const InstructionSet set : instruction_sets()) {
+      const auto kernels = [&](size_t k) { return listed_kernels(set, ops[k]->info().name); };
+      kernels(0)->together->value(objects.data(), at.data(), out.data(), points);
+      for (size_t k = 0; k < ops.size(); ++k) {
+        Row alone;
+        kernels(k)->value(objects[k], at.data(), alone.data(), points);
+        for (size_t j = 0; j < points; ++j) {
+          EXPECT_TRUE(same(together[k][j], alone[j]))
+              << instruction_set_name(set) << ", " << ops[k]->info().name << ": " << together[k][j]
+              << ", alone " << alone[j] << " at " << in[0][j] << ", " << in[1][j];
+        }
+      }
+    }
+  }
 }
 
 // The tape on the kernels of one set.

@@ -88,14 +88,21 @@ struct KernelsOf {
 
   static void partials(const void* object, const float* const* in, float* out,
                        float* const* partial, size_t n) {
+    partials_of(object, in, out, partial, n, std::make_index_sequence<arity>());
+  }
+
+  template <size_t... I>
+  static void partials_of(const void* object, const float* const* in, float* out,
+                          float* const* partial, size_t n, std::index_sequence<I...>) {
     using Dual = Gradient<L, arity>;
     const Own op = *static_cast<const Op*>(object);
+    // Operations without inputs use neither.
+    [[maybe_unused]] const std::array<const float*, arity> from{in[I]...};
+    [[maybe_unused]] const std::array<float*, arity> to{partial[I]...};
     for (size_t i = 0; i < n; i += L::width) {
-      std::array<Dual, arity> at;
-      for (int k = 0; k < arity; ++k) at[k] = Dual::variable(L::load(in[k] + i), k);
-      const Dual result = call(op, at.data(), std::make_index_sequence<arity>());
+      const Dual result = op.template eval<Dual>(Dual::variable(L::load(from[I] + i), int(I))...);
       result.v.store(out + i);
-      for (int k = 0; k < arity; ++k) result.d[k].store(partial[k] + i);
+      (result.d[I].store(to[I] + i), ...);
     }
   }
 

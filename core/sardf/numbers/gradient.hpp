@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 
 #include "sardf/numbers/interval.hpp"
 #include "sardf/numbers/real.hpp"
@@ -24,57 +25,49 @@ struct Gradient {
     d.fill(T(0.0));
   }
   static Gradient variable(const T& a, int index) {
+    return made(a, [&](int i) { return T(i == index ? 1.0 : 0.0); });
+  }
+
+  /// slope(i) is derivative number i. Not a loop: compilers would keep the derivatives in memory.
+  template <class Slope>
+  static Gradient made(const T& value, Slope slope) {
+    return made(value, slope, std::make_integer_sequence<int, N>());
+  }
+  template <class Slope, int... I>
+  static Gradient made(const T& value, [[maybe_unused]] Slope slope,
+                       std::integer_sequence<int, I...>) {
     Gradient g;
-    g.v = a;
-    g.d.fill(T(0.0));
-    g.d[index] = T(1.0);
+    g.v = value;
+    ((g.d[I] = slope(I)), ...);
     return g;
   }
 
   /// The value `value` whose derivative is slope times the derivative of a.
   static Gradient chain(const Gradient& a, const T& value, const T& slope) {
-    Gradient g;
-    g.v = value;
-    for (int i = 0; i < N; ++i) g.d[i] = slope * a.d[i];
-    return g;
+    return made(value, [&](int i) { return slope * a.d[i]; });
   }
   static Gradient chain(const Gradient& a, const Gradient& b, const T& value, const T& by_a,
                         const T& by_b) {
-    Gradient g;
-    g.v = value;
-    for (int i = 0; i < N; ++i) g.d[i] = by_a * a.d[i] + by_b * b.d[i];
-    return g;
+    return made(value, [&](int i) { return by_a * a.d[i] + by_b * b.d[i]; });
   }
 
   /// `value` with a's derivative, b's, or the mean of both where neither is chosen.
   template <class Mask>
   static Gradient tied(const Gradient& a, const Gradient& b, const Mask& is_a, const Mask& is_b,
                        const T& value) {
-    Gradient g;
-    g.v = value;
-    for (int i = 0; i < N; ++i) {
-      g.d[i] = select(is_a, a.d[i], select(is_b, b.d[i], T(0.5) * (a.d[i] + b.d[i])));
-    }
-    return g;
+    return made(value, [&](int i) {
+      return select(is_a, a.d[i], select(is_b, b.d[i], T(0.5) * (a.d[i] + b.d[i])));
+    });
   }
 
   friend Gradient operator+(const Gradient& a, const Gradient& b) {
-    Gradient g;
-    g.v = a.v + b.v;
-    for (int i = 0; i < N; ++i) g.d[i] = a.d[i] + b.d[i];
-    return g;
+    return made(a.v + b.v, [&](int i) { return a.d[i] + b.d[i]; });
   }
   friend Gradient operator-(const Gradient& a, const Gradient& b) {
-    Gradient g;
-    g.v = a.v - b.v;
-    for (int i = 0; i < N; ++i) g.d[i] = a.d[i] - b.d[i];
-    return g;
+    return made(a.v - b.v, [&](int i) { return a.d[i] - b.d[i]; });
   }
   friend Gradient operator-(const Gradient& a) {
-    Gradient g;
-    g.v = -a.v;
-    for (int i = 0; i < N; ++i) g.d[i] = -a.d[i];
-    return g;
+    return made(-a.v, [&](int i) { return -a.d[i]; });
   }
   friend Gradient operator*(const Gradient& a, const Gradient& b) {
     return chain(a, b, a.v * b.v, b.v, a.v);
@@ -90,10 +83,7 @@ struct Gradient {
 
   template <class Mask>
   friend Gradient select(const Mask& mask, const Gradient& a, const Gradient& b) {
-    Gradient g;
-    g.v = select(mask, a.v, b.v);
-    for (int i = 0; i < N; ++i) g.d[i] = select(mask, a.d[i], b.d[i]);
-    return g;
+    return made(select(mask, a.v, b.v), [&](int i) { return select(mask, a.d[i], b.d[i]); });
   }
   friend Gradient min(const Gradient& a, const Gradient& b) {
     Gradient g = select(a.v < b.v, a, b);
@@ -121,9 +111,7 @@ struct Gradient {
     return rests;
   }
   friend Gradient freeze(const Gradient& a) {
-    Gradient g(0.0);
-    g.v = freeze(a.v);
-    return g;
+    return made(freeze(a.v), [](int) { return T(0.0); });
   }
   friend Gradient sqrt(const Gradient& a) {
     const T root = sqrt(a.v);
@@ -136,10 +124,7 @@ struct Gradient {
   friend Gradient length(const Gradient& a, const Gradient& b, const Gradient& c) {
     const T whole = length(a.v, b.v, c.v);
     const T i = cosine(a.v, whole), j = cosine(b.v, whole), k = cosine(c.v, whole);
-    Gradient g;
-    g.v = whole;
-    for (int n = 0; n < N; ++n) g.d[n] = i * a.d[n] + j * b.d[n] + k * c.d[n];
-    return g;
+    return made(whole, [&](int n) { return i * a.d[n] + j * b.d[n] + k * c.d[n]; });
   }
   friend Gradient exp(const Gradient& a) {
     const T e = exp(a.v);

@@ -1,7 +1,7 @@
 """How many pixels a second `sardf render` and POV-Ray make of the same flat pictures, and how far
 the pictures agree.
 
-    python bench/render_rates.py --size 320x240 [scenes/tooth.json ...]
+    python bench/render_rates.py --size 1280x960 [scenes/tooth.json ...]
 
 POV-Ray draws the text that `sardf povray` writes, whose pieces and bounds sardf has found, and a
 plain translation of the scene: one isosurface in its box, with the smallest max_gradient that, by
@@ -77,7 +77,7 @@ def compare(reference, picture):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("scenes", nargs="*", default=sorted((ROOT / "scenes").glob("*.json")))
-    parser.add_argument("--size", default="320x240", help="WIDTHxHEIGHT")
+    parser.add_argument("--size", default="1280x960", help="WIDTHxHEIGHT")
     options = parser.parse_args()
     width, height = map(int, options.size.split("x"))
     print("                    sardf   POV-Ray, ours    plain and white")

@@ -26,8 +26,9 @@ bool single_does(const BoundingBox& box, const Evaluator& color);
 /// precision where `single_does` and that is seen to do.
 void find_colors(const Subject& subject, const LocalEvaluator& color, std::span<Hit> hits,
                  Watch& watch);
-/// The colours of the table's rays, all of which have met the solid: use(i, colour) where both
-/// sides of the surface have the same; the trial of the others becomes NaN.
+/// The colours of the table's rays, all of which have met the solid: use(first, n, block) for the
+/// rays [first, first + n), whose colours are the first n of block.channels where both sides of the
+/// surface have the same; the trial of the others has become NaN.
 void mix_colors(const Subject& subject, const LocalEvaluator& color, RayTable& table, Watch& watch,
                 const std::function<void(size_t first, size_t n, const RayBlock&)>& use);
 

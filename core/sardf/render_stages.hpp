@@ -96,8 +96,8 @@ Ray ray_of(const Subject& subject, const RayTable& table, size_t i);
 struct RayTables {
   RayTable going, met, unsure;
 };
-/// Moves the rays that are going on, at most `most_steps` steps each, until they have missed the
-/// solid and are gone, or come into one of the other tables, in which nothing else is left.
+/// Moves the rays that are going on, at most `most_steps` steps each. Those that have missed the
+/// solid are dropped; of the rest, those that have ended are then what the other two tables hold.
 void march(const Subject& subject, RayTables& rays, int most_steps, Watch& watch);
 /// The like for rays that are on their way, in double.
 void march(const Subject& subject, std::span<Ray> rays, int most_steps, Watch& watch);

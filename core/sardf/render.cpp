@@ -26,9 +26,9 @@ constexpr double most_single_error = 1e-3;
 // Depths in single precision are told apart by less than a tenth of this share of their range, and
 // what they count as the tolerance is less than it by that tenth.
 constexpr double least_single_tolerance = 0x1p-16, tolerance_kept = 0.9;
-// Steps of a ray in single precision and in double before intervals are tried, which cost more
-// than hundreds of steps in blocks.
-constexpr int single_steps = 512, double_steps = 512;
+// Steps of a ray in double before intervals are tried, which cost more than hundreds of steps in
+// blocks.
+constexpr int double_steps = 512;
 
 void check_options(const RenderOptions& options, const BoundingBox& bounds) {
   for (const int edge : {options.width, options.height}) {
@@ -138,10 +138,10 @@ TileHits& cast(const Subject& subject, const Tile& tile, const RenderOptions& op
     begin_rays(subject, beams, options.width, options.height, hits.rays);
     return hits;
   }
-  begin_rays(subject, beams, options.width, options.height, tables.going);
-  march(subject, tables, single_steps, watch);
-  for (const RayTable* open : {&tables.unsure, &tables.going})
-    for (size_t i = 0; i < open->count; ++i) hits.rays.push_back(ray_of(subject, *open, i));
+  march(subject, beams, options.width, options.height, tables, watch);
+  for (size_t i = 0; i < tables.open.count; ++i) {
+    hits.rays.push_back(ray_of(subject, tables.open, i));
+  }
   return hits;
 }
 

@@ -159,12 +159,8 @@ std::vector<Beam> find_beams(const Subject& subject, const Tile& tile, Watch& wa
   return beams;
 }
 
-void begin_rays(const Subject& subject, const std::vector<Beam>& beams, int width, int height,
-                RayTable& table) {
-  table.count = 0;
-  for (const Beam& beam : beams) {
-    ray_kernels().begin(subject.frame, square_of(subject, beam, width, height), table);
-  }
+void begin_rays(const Subject& subject, const Beam& beam, int width, int height, RayTable& table) {
+  ray_kernels().begin(subject.frame, square_of(subject, beam, width, height), table);
 }
 
 void begin_rays(const Subject& subject, const std::vector<Beam>& beams, int width, int height,

@@ -9,6 +9,7 @@
 // every ray comes to an end.
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "sardf/render_stages.hpp"
 
@@ -93,30 +94,40 @@ size_t step(const Subject& subject, RayTable& table, Watch& watch) {
   return going;
 }
 
-// Of whole blocks, rays behind the last one count as ended.
+// Of whole lanes, rays behind the last one count as ended.
 void end_room(RayTable& table) {
-  std::fill_n(&table.state[table.count], table.room - RayTable::capacity, float(RayTable::missed));
+  constexpr size_t most_lanes = 16;
+  std::fill_n(&table.state[table.count], most_lanes, float(RayTable::missed));
 }
 
 }  // namespace
 
-void march(const Subject& subject, RayTables& rays, int most_steps, Watch& watch) {
+void march(const Subject& subject, const std::vector<Beam>& beams, int width, int height,
+           RayTables& rays, Watch& watch) {
+  // What is known of so many rays lies in a processor's nearest cache, and makes a whole block.
+  constexpr size_t most_going = RayBlock::capacity;
   // Ended rays cost as much as others until they are taken out, which costs more than a step.
   constexpr double crowded = 0.75;
+  // Without new rays. Those that need more are few.
+  constexpr int most_steps = 512;
   const RayKernels& kernels = ray_kernels();
-  const auto take_ended = [&] {
-    kernels.copy(rays.going, RayTable::met, rays.met);
-    kernels.copy(rays.going, RayTable::unsure, rays.unsure);
-    kernels.copy(rays.going, RayTable::going, rays.going);
-    end_room(rays.going);
-  };
-  rays.met.count = rays.unsure.count = 0;
-  take_ended();
-  for (int steps = 0; steps < most_steps && rays.going.count > 0; ++steps) {
-    const size_t going = step(subject, rays.going, watch);
-    if (double(going) < crowded * double(rays.going.count)) take_ended();
+  auto [going, met, open] = std::tie(rays.going, rays.met, rays.open);
+  going.count = met.count = open.count = 0;
+  auto next = beams.begin();
+  for (int steps = 0; going.count > 0 || next != beams.end(); ++steps) {
+    for (; next != beams.end() && going.count + RaySquare::rays <= most_going; ++next) {
+      begin_rays(subject, *next, width, height, going);
+      steps = 0;
+    }
+    end_room(going);
+    const size_t left = step(subject, going, watch);
+    const bool is_last = steps == most_steps;
+    if (!is_last && double(left) > crowded * double(going.count)) continue;
+    kernels.copy(going, RayTable::met, met);
+    kernels.copy(going, RayTable::unsure, open);
+    kernels.copy(going, RayTable::going, is_last ? open : going);
+    if (is_last) going.count = 0;
   }
-  take_ended();
 }
 
 void march(const Subject& subject, std::span<Ray> rays, int most_steps, Watch& watch) {

@@ -82,23 +82,24 @@ inline constexpr int smallest_edge = RaySquare::edge;
 /// The beams of a tile that are not proven to show nothing; smallest_edge pixels wide.
 std::vector<Beam> find_beams(const Subject& subject, const Tile& tile, Watch& watch);
 
-/// Replaces the table's rays by those of the beams' pixels. The picture's edge cuts beams.
-void begin_rays(const Subject& subject, const std::vector<Beam>& beams, int width, int height,
-                RayTable& table);
-/// Appends them as single rays.
+/// Appends the rays of a beam's pixels. The picture's edge cuts beams.
+void begin_rays(const Subject& subject, const Beam& beam, int width, int height, RayTable& table);
+/// Appends those of several beams as single rays.
 void begin_rays(const Subject& subject, const std::vector<Beam>& beams, int width, int height,
                 std::vector<Ray>& rays);
 /// A ray of a table in double. Rays in single precision are not quite the true ones: where that may
 /// matter, it is on its way from where it is proven clear, and what it meets is seen anew.
 Ray ray_of(const Subject& subject, const RayTable& table, size_t i);
 
-/// Rays of a tile: on their way, sure to have met the solid, and such that may have met it.
+/// Rays of a tile: on their way, sure to have met the solid, and such that double has to go on
+/// with.
 struct RayTables {
-  RayTable going, met, unsure;
+  RayTable going, met, open;
 };
-/// Moves the rays that are going on, at most `most_steps` steps each. Those that have missed the
-/// solid are dropped; of the rest, those that have ended are then what the other two tables hold.
-void march(const Subject& subject, RayTables& rays, int most_steps, Watch& watch);
+/// Moves the rays of beams until they have met the solid or missed it; those that may have met it,
+/// or need very many steps, are open.
+void march(const Subject& subject, const std::vector<Beam>& beams, int width, int height,
+           RayTables& rays, Watch& watch);
 /// The like for rays that are on their way, in double.
 void march(const Subject& subject, std::span<Ray> rays, int most_steps, Watch& watch);
 

@@ -45,7 +45,9 @@ struct RaySquare {
 
 /// Rays of a tile, by numbers. Whole blocks are worked on: what is behind `count` has no meaning.
 struct alignas(cache_line) RayTable {
-  static constexpr size_t capacity = 32 * 32, room = capacity + 16;
+  // Rows that begin a multiple of 4 KiB apart, or nearly so, would wait for each other: processors
+  // tell what was just written by the lowest bits of its place.
+  static constexpr size_t capacity = 32 * 32, room = capacity + 48;
   using Row = std::array<float, room>;
   enum State : int { going, missed, met, unsure };
 

@@ -144,6 +144,8 @@ class Operation {
 
   /// Whether there is a formula: a field that carries data (data_operation.hpp) has none.
   virtual bool has_formula() const { return true; }
+  /// Whether a value takes about as long as a formula's: not where something is searched for.
+  virtual bool is_quick() const { return has_formula(); }
   /// Records the formula; the result's step is trace.result.
   virtual void record(Trace& trace) const = 0;
   /// Why `partials` throws Error, in one sentence; empty for all others.

@@ -190,7 +190,7 @@ class Painter {
     const std::array<Expression, 3> color = scene.base_color();
     color_ = LocalEvaluator(Evaluator(std::span<const Expression>(color)), scene.bounds());
     shows_colors_alone_ = options.look == RenderLook::flat && !options.normals && !options.depth &&
-                          single_does(scene.bounds(), color_.whole());
+                          single_pays(scene.bounds(), color_.whole());
   }
 
   void paint(const Subject& subject, const Tile& tile, Watch& watch) const {

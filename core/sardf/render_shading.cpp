@@ -127,6 +127,11 @@ constexpr double equal_colors = 0.25 / 255;
 // Coordinates in single precision tell points apart well enough up to so many diagonals.
 constexpr double far = 16;
 
+// Operations in double that are worth being evaluated twice where that saves finding the surface.
+constexpr int most_in_double = 3;
+
+bool is_near(const BoundingBox& box) { return norm(box.lo) + norm(box.hi) < far * box.diagonal(); }
+
 double shown(double channel) { return channel > 0 ? std::min(channel, 1.0) : 0; }
 
 // The colours that single precision gives so far before and behind the surface; the numbers of
@@ -187,8 +192,15 @@ void find_normals(const Subject& subject, std::span<Hit> hits, Watch& watch) {
 
 bool single_does(const BoundingBox& box, const Evaluator& color) {
   // Twice in double would be a waste.
-  if (!is_single(color)) return false;
-  return norm(box.lo) + norm(box.hi) < far * box.diagonal();
+  return is_near(box) && is_single(color);
+}
+
+bool single_pays(const BoundingBox& box, const Evaluator& color) {
+  const std::vector<Instruction>& steps = color.tape().instructions();
+  const auto is_quick = [](const Instruction& step) { return step.operation->is_quick(); };
+  const auto is_in_double = [](const Instruction& step) { return !step.operation->has_formula(); };
+  return is_near(box) && std::all_of(steps.begin(), steps.end(), is_quick) &&
+         std::count_if(steps.begin(), steps.end(), is_in_double) <= most_in_double;
 }
 
 void mix_colors(const Subject& subject, const LocalEvaluator& color, RayTable& table, Watch& watch,

@@ -22,6 +22,9 @@ void find_normals(const Subject& subject, std::span<Hit> hits, Watch& watch);
 
 /// Whether single precision serves for colours within the box.
 bool single_does(const BoundingBox& box, const Evaluator& color);
+/// Whether it serves for rays in single precision: else their surface has to be found in double
+/// first, and some of the colours may be in double in any case.
+bool single_pays(const BoundingBox& box, const Evaluator& color);
 /// The colours themselves, as POV-Ray's flat picture has them: limited to [0, 1]. In single
 /// precision where `single_does` and that is seen to do.
 void find_colors(const Subject& subject, const LocalEvaluator& color, std::span<Hit> hits,

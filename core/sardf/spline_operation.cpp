@@ -49,6 +49,8 @@ class SplineOperation final : public DataOperation {
         derived_(derived),
         bounds_(grid_, coefficients_) {}
 
+  bool is_quick() const override { return true; }
+
   using DataOperation::evaluate;
   void evaluate(const double* const* in, double* out, size_t n) const override {
     with_degrees([&](auto x, auto y, auto z) { values(in, out, n, x, y, z); });

@@ -38,6 +38,11 @@ void run(const Instruction& i, const double* const* in, double* out, double* con
 // Evaluates an instruction, or those that one call evaluates from it on, and returns their number.
 // Register r lies at at[r].
 size_t run_from(const Instruction* first, const float* const* in, float* const* at, size_t n) {
+  if (first->fused) {
+    const Instruction& next = first[1];
+    first->fused(first->object, next.object, in, at[next.in[0]], at[next.out], n);
+    return 2;
+  }
   const size_t count = first->together;
   if (count == 1) {
     run(*first, in, at[first->out], n);

@@ -64,6 +64,9 @@ template <class Op>
 concept HasFamily = requires { typename Op::Family; };
 
 template <class Op, class Isa>
+struct FusedOf;
+
+template <class Op, class Isa>
 struct KernelsOf {
   static constexpr int arity = Op::arity;
   using L = Lanes<Isa>;
@@ -108,6 +111,7 @@ struct KernelsOf {
 
   static constexpr Kernels make_table() {
     Kernels made{&value, &partials};
+    if constexpr (requires { typename Op::FusedWith; }) made.fused = FusedOf<Op, Isa>::table;
     if constexpr (HasFamily<Op>) {
       static_assert(std::is_standard_layout_v<Op>);
       made.together = &TogetherOf<typename Op::Family, Isa>::table;
@@ -116,6 +120,36 @@ struct KernelsOf {
     return made;
   }
   static constexpr Kernels table = make_table();
+};
+
+/// The kernels of an operation with each of the list Op::FusedWith, operations of two inputs that
+/// often take its result as the second.
+template <class Op, class Isa>
+struct FusedOf {
+  using Alone = KernelsOf<Op, Isa>;
+  using L = typename Alone::L;
+
+  template <class Next>
+  static void value(const void* object, const void* next_object, const float* const* in,
+                    const float* first, float* out, size_t n) {
+    const typename Alone::Own op = *static_cast<const Op*>(object);
+    const typename KernelsOf<Next, Isa>::Own next = *static_cast<const Next*>(next_object);
+    std::array<const float*, Alone::arity> from;
+    for (int k = 0; k < Alone::arity; ++k) from[k] = in[k];
+    for (size_t i = 0; i < n; i += L::width) {
+      std::array<L, Alone::arity> at;
+      for (int k = 0; k < Alone::arity; ++k) at[k] = L::load(from[k] + i);
+      const L second = Alone::call(op, at.data(), std::make_index_sequence<Alone::arity>());
+      next.template eval<L>(L::load(first + i), second).store(out + i);
+    }
+  }
+
+  template <template <class...> class List, class... Next>
+  static constexpr std::array<Fused, sizeof...(Next)> make_table(
+      std::type_identity<List<Next...>>) {
+    return {Fused{&value<Next>, &KernelsOf<Next, Isa>::value}...};
+  }
+  static constexpr auto table = make_table(std::type_identity<typename Op::FusedWith>());
 };
 
 /// One term of the chain rule: outer = by * inner, or outer += by * inner, for n points, n a

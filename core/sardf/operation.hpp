@@ -81,6 +81,17 @@ struct Together {
 /// Most operations that one call evaluates.
 inline constexpr int most_together = 4;
 
+/// Bulk evaluation of an operation and of one that takes its result as the second input, in one
+/// pass: what lies between is not written.
+struct Fused {
+  /// out is the result of `next` of `first` and the result of `op`.
+  using Value = void (*)(const void* op, const void* next, const float* const* in,
+                         const float* first, float* out, size_t n);
+  Value value = nullptr;
+  /// The kernel that `next` has alone, by which it is known.
+  void (*next)(const void* op, const float* const* in, float* out, size_t n) = nullptr;
+};
+
 /// Bulk evaluation of n points, n a multiple of 16. `in` and `out` are arrays of n.
 struct Kernels {
   using Value = void (*)(const void* op, const float* const* in, float* out, size_t n);
@@ -94,6 +105,8 @@ struct Kernels {
   /// Its place among them, where they are parts of one formula and have equal parameters; -1 where
   /// any of the family will do.
   int place = -1;
+  /// How it is evaluated with operations that take its result.
+  std::span<const Fused> fused{};
 };
 
 class Operation;

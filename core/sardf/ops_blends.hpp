@@ -169,5 +169,6 @@ struct Equivalence {
 
 template <class... Blends>
 using OpsOfBlends = OpList<IntersectionOf<Blends>..., UnionOf<Blends>..., DifferenceOf<Blends>...>;
+using MinMaxOps = OpsOfBlends<MinMax>;
 
 }  // namespace sardf

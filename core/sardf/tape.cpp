@@ -141,6 +141,15 @@ void find_together(std::vector<Instruction>& instructions) {
   }
 }
 
+// How the instruction, whose result is the second input of the next one only, is evaluated with it;
+// null where it is not.
+Fused::Value fused_with(const Instruction& instruction, const Instruction& next) {
+  for (const Fused& fused : instruction.kernels->fused) {
+    if (fused.next == next.kernels->value) return fused.value;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 Tape::Tape(std::span<const Expression> outputs) : Tape(CodeOf(outputs).code()) {}
@@ -183,6 +192,8 @@ Tape::Tape(const Code& code) : source_(code.source), outputs_(code.outputs) {
       if (last[step] != s) continue;
       free.push_back(in);
       last[step] = always;
+      if (step + 1 == s && k == 1)
+        instructions_.back().fused = fused_with(instructions_.back(), instruction);
     }
     instructions_.push_back(instruction);
   }

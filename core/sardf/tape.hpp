@@ -20,6 +20,8 @@ struct Instruction {
   // How many instructions from this one on a single call may evaluate (Kernels::together): 1 or, at
   // the first of several, their number.
   uint32_t together = 1;
+  // If one call evaluates this one and the next, and nothing else needs this one's result: by what.
+  Fused::Value fused = nullptr;
 };
 
 /// A program whose values are numbered: 0, 1, 2 are x, y, z, then come the constants, then the

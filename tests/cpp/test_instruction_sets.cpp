@@ -154,6 +154,56 @@ TEST(InstructionSets, OperationsTogetherGiveTheBitsOfEach) {
   }
 }
 
+/// How the second takes the result of the first in one pass; null where it cannot.
+const Fused* fused_with(const Kernels& kernels, const Kernels& next) {
+  for (const Fused& fused : kernels.fused) {
+    if (fused.next == next.value) return &fused;
+  }
+  return nullptr;
+}
+
+void expect_fused_gives_the_bits_of_each(InstructionSet set, const Operation& op,
+                                         const Operation& next, Random& r) {
+  const Kernels& kernels = *listed_kernels(set, op.info().name);
+  const Kernels& next_kernels = *listed_kernels(set, next.info().name);
+  const std::array<Row, max_arity> in = arguments(r);
+  const Row& first = in[max_arity - 1];
+  std::array<const float*, max_arity> at{};
+  for (size_t k = 0; k < size_t(op.info().arity); ++k) at[k] = in[k].data();
+  Row second, expected, got;
+  kernels.value(op.object(), at.data(), second.data(), points);
+  const std::array<const float*, max_arity> both{first.data(), second.data()};
+  next_kernels.value(next.object(), both.data(), expected.data(), points);
+  fused_with(kernels, next_kernels)
+      ->value(op.object(), next.object(), at.data(), first.data(), got.data(), points);
+  for (size_t i = 0; i < points; ++i) {
+    EXPECT_TRUE(same(got[i], expected[i]))
+        << instruction_set_name(set) << ", " << op.info().name << ", " << next.info().name << ": "
+        << got[i] << ", one after the other " << expected[i] << " at " << in[0][i] << ", "
+        << in[1][i] << ", " << in[2][i];
+  }
+}
+
+TEST(InstructionSets, FusedOperationsGiveTheBitsOfOneAfterTheOther) {
+  Random r(87);
+  int pairs = 0;
+  for (const laws::ListedOperation& listed : laws::listed_operations()) {
+    if (listed_kernels(InstructionSet::baseline, listed.name)->fused.empty()) continue;
+    for (const laws::ListedOperation& other : laws::listed_operations()) {
+      for (const InstructionSet set : instruction_sets()) {
+        const Kernels& kernels = *listed_kernels(set, listed.name);
+        if (!fused_with(kernels, *listed_kernels(set, other.name))) continue;
+        ++pairs;
+        for (int i = 0; i < laws::effort(20); ++i) {
+          expect_fused_gives_the_bits_of_each(set, *listed.random(r), *other.random(r), r);
+        }
+      }
+    }
+  }
+  // Nine solids, the union, the intersection and the difference.
+  EXPECT_EQ(pairs, 27 * int(instruction_sets().size()));
+}
+
 // The tape on the kernels of one set.
 Row run(const Tape& tape, InstructionSet set, const std::array<Row, 3>& xyz) {
   std::vector<Row> registers(tape.registers());

@@ -162,8 +162,7 @@ struct Vertices {
 template <class T>
 void resize_on_all_threads(std::vector<T>& empty, size_t n) {
   constexpr size_t page = size_t(4) << 10, pages = 512;
-  empty.reserve(n);
-  use_large_pages(empty.data(), n * sizeof(T));
+  reserve_large(empty, n);
   auto* bytes = reinterpret_cast<volatile char*>(empty.data());
   const size_t all = (n * sizeof(T) + page - 1) / page;
   tbb::parallel_for(size_t(0), (all + pages - 1) / pages, [&](size_t part) {

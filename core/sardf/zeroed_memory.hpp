@@ -48,8 +48,8 @@ void resize_large(std::vector<T>& empty, size_t n) {
 }
 
 #if SARDF_MAPS_MEMORY
-/// Zeros in large pages of their own. Each takes a thirtieth of the time of as many small ones, so
-/// it is worth its memory where a sixteenth of it is used.
+/// Zeros in large pages of their own. One takes a sixteenth of the time of the small ones in its
+/// place, so it is worth its memory where as much of it is used.
 struct MappedZeros {
   static bool serve(size_t bytes) { return bytes >= large_page / 16; }
   static size_t room(size_t bytes) { return (bytes + large_page - 1) / large_page * large_page; }

@@ -35,14 +35,24 @@ void run(const Instruction& i, const double* const* in, double* out, double* con
   i.operation->partials(in, out, by, n);
 }
 
+size_t run_pairs(const Instruction* first, const float* const* in, float* const* at, size_t n) {
+  const size_t pairs = first->pairs;
+  const float* const before = at[first[1].in[0]];
+  const Instruction& last = first[2 * pairs - 1];
+  if (pairs == 1) {
+    first->fused->value(first->object, last.object, in, before, at[last.out], n);
+    return 2;
+  }
+  std::array<const void*, most_pairs> objects;
+  for (size_t k = 0; k < pairs; ++k) objects[k] = first[2 * k].object;
+  first->fused->several(objects.data(), pairs, last.object, in, before, at[last.out], n);
+  return 2 * pairs;
+}
+
 // Evaluates an instruction, or those that one call evaluates from it on, and returns their number.
 // Register r lies at at[r].
 size_t run_from(const Instruction* first, const float* const* in, float* const* at, size_t n) {
-  if (first->fused) {
-    const Instruction& next = first[1];
-    first->fused(first->object, next.object, in, at[next.in[0]], at[next.out], n);
-    return 2;
-  }
+  if (first->fused) return run_pairs(first, in, at, n);
   const size_t count = first->together;
   if (count == 1) {
     run(*first, in, at[first->out], n);

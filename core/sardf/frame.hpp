@@ -24,6 +24,9 @@ class Frame {
     v_ = cross(w_, u_);
   }
 
+  /// Whether u, v, w are x, y, z less the origin's.
+  bool is_upright() const { return upright_; }
+
   /// The unit vectors of u, v, w.
   std::array<Vec3, 3> rows() const {
     return upright_ ? std::array<Vec3, 3>{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}

@@ -10,7 +10,9 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "sardf/numbers/gradient.hpp"
@@ -66,6 +68,15 @@ concept HasFamily = requires { typename Op::Family; };
 template <class Op, class Isa>
 struct FusedOf;
 
+/// Solids that are alike but for their middles: with the coordinates x, ... of a point,
+///   middle()            an array: where the middle is in the first of the coordinates
+///   at_distance(d, x, ...)
+///                       the value at the distance d from the middle. It never grows with d, and
+///                       eval is at_distance(length(x - middle()[0], ...), x, ...)
+///   is_alike(other)     whether `other` has the same at_distance
+template <class Op>
+concept HasMiddle = requires(const Op& op) { op.middle(); };
+
 template <class Op, class Isa>
 struct KernelsOf {
   static constexpr int arity = Op::arity;
@@ -73,20 +84,27 @@ struct KernelsOf {
   // A copy stays in registers, since results cannot be written to it; so do those of pointers.
   using Own = std::conditional_t<std::is_trivially_copyable_v<Op>, Op, const Op&>;
 
-  template <class T, size_t... I>
-  static T call(const Op& op, const T* in, std::index_sequence<I...>) {
-    return op.template eval<T>(in[I]...);
+  using Pointers = std::array<const float*, arity>;
+  using Point = std::array<L, arity>;
+
+  static Pointers pointers(const float* const* in) {
+    Pointers from;
+    for (int k = 0; k < arity; ++k) from[k] = in[k];
+    return from;
+  }
+  static Point load(const Pointers& from, size_t i) {
+    Point at;
+    for (int k = 0; k < arity; ++k) at[k] = L::load(from[k] + i);
+    return at;
+  }
+  static L call(const Op& op, const Point& at) {
+    return std::apply([&](auto... x) { return op.template eval<L>(x...); }, at);
   }
 
   static void value(const void* object, const float* const* in, float* out, size_t n) {
     const Own op = *static_cast<const Op*>(object);
-    std::array<const float*, arity> from;
-    for (int k = 0; k < arity; ++k) from[k] = in[k];
-    for (size_t i = 0; i < n; i += L::width) {
-      std::array<L, arity> at;
-      for (int k = 0; k < arity; ++k) at[k] = L::load(from[k] + i);
-      call(op, at.data(), std::make_index_sequence<arity>()).store(out + i);
-    }
+    const Pointers from = pointers(in);
+    for (size_t i = 0; i < n; i += L::width) call(op, load(from, i)).store(out + i);
   }
 
   static void partials(const void* object, const float* const* in, float* out,
@@ -122,8 +140,66 @@ struct KernelsOf {
   static constexpr Kernels table = make_table();
 };
 
-/// The kernels of an operation with each of the list Op::FusedWith, operations of two inputs that
-/// often take its result as the second.
+/// The kernel of several solids, each joined to the result before by the same minimum or maximum,
+/// with one root for all: rounding keeps the order of numbers, so the least root is that of the
+/// least square, and the largest of the solids' values is that of the nearest middle. It gives, in
+/// every bit, what one after the other gives.
+template <class Op, class Isa>
+struct SeveralOf {
+  using Alone = KernelsOf<Op, Isa>;
+  using L = typename Alone::L;
+  using Middle = std::array<float, std::tuple_size_v<decltype(std::declval<Op>().middle())>>;
+
+  template <class Next>
+  static void value(const void* const* objects, size_t count, const void* next_object,
+                    const float* const* in, const float* first, float* out, size_t n) {
+    const Op op = *static_cast<const Op*>(objects[0]);
+    const Next next = *static_cast<const Next*>(next_object);
+    std::array<Middle, most_pairs> middles;
+    for (size_t m = 0; m < count; ++m) middles[m] = middle(objects[m]);
+    const typename Alone::Pointers from = Alone::pointers(in);
+    for (size_t i = 0; i < n; i += L::width) {
+      const typename Alone::Point at = Alone::load(from, i);
+      L square = squared_distance(at, middles[0]);
+      for (size_t m = 1; m < count; ++m) {
+        const L other = squared_distance(at, middles[m]);
+        square = Next::join == Join::intersection ? max(square, other) : min(square, other);
+      }
+      const L distance = sqrt(square);
+      const L second = std::apply([&](auto... x) { return op.at_distance(distance, x...); }, at);
+      next.template eval<L>(L::load(first + i), second).store(out + i);
+    }
+  }
+
+  /// An infinite coordinate of one middle would make NaN of its solid only.
+  static bool alike(const void* a, const void* b) {
+    return is_finite(middle(a)) && is_finite(middle(b)) &&
+           static_cast<const Op*>(a)->is_alike(*static_cast<const Op*>(b));
+  }
+
+ private:
+  static Middle middle(const void* object) {
+    const auto exact = static_cast<const Op*>(object)->middle();
+    Middle at;
+    for (size_t k = 0; k < at.size(); ++k) at[k] = float(exact[k]);
+    return at;
+  }
+  static bool is_finite(const Middle& at) {
+    bool every = true;
+    for (size_t k = 0; k < at.size(); ++k) every = every && std::isfinite(at[k]);
+    return every;
+  }
+
+  // The steps of `length`.
+  static L squared_distance(const typename Alone::Point& at, const Middle& middle) {
+    L sum = square(at[0] - L(middle[0]));
+    for (size_t k = 1; k < middle.size(); ++k) sum = sum + square(at[k] - L(middle[k]));
+    return sum;
+  }
+};
+
+/// The kernels of an operation with each of the list Op::FusedWith, minima and maxima that often
+/// take its result as the second input.
 template <class Op, class Isa>
 struct FusedOf {
   using Alone = KernelsOf<Op, Isa>;
@@ -133,21 +209,27 @@ struct FusedOf {
   static void value(const void* object, const void* next_object, const float* const* in,
                     const float* first, float* out, size_t n) {
     const typename Alone::Own op = *static_cast<const Op*>(object);
-    const typename KernelsOf<Next, Isa>::Own next = *static_cast<const Next*>(next_object);
-    std::array<const float*, Alone::arity> from;
-    for (int k = 0; k < Alone::arity; ++k) from[k] = in[k];
+    const Next next = *static_cast<const Next*>(next_object);
+    const typename Alone::Pointers from = Alone::pointers(in);
     for (size_t i = 0; i < n; i += L::width) {
-      std::array<L, Alone::arity> at;
-      for (int k = 0; k < Alone::arity; ++k) at[k] = L::load(from[k] + i);
-      const L second = Alone::call(op, at.data(), std::make_index_sequence<Alone::arity>());
+      const L second = Alone::call(op, Alone::load(from, i));
       next.template eval<L>(L::load(first + i), second).store(out + i);
     }
   }
 
+  template <class Next>
+  static constexpr Fused fused() {
+    Fused made{&value<Next>, &KernelsOf<Next, Isa>::value};
+    if constexpr (HasMiddle<Op>) {
+      made.several = &SeveralOf<Op, Isa>::template value<Next>;
+      made.alike = &SeveralOf<Op, Isa>::alike;
+    }
+    return made;
+  }
   template <template <class...> class List, class... Next>
   static constexpr std::array<Fused, sizeof...(Next)> make_table(
       std::type_identity<List<Next...>>) {
-    return {Fused{&value<Next>, &KernelsOf<Next, Isa>::value}...};
+    return {fused<Next>()...};
   }
   static constexpr auto table = make_table(std::type_identity<typename Op::FusedWith>());
 };

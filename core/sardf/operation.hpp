@@ -81,16 +81,26 @@ struct Together {
 /// Most operations that one call evaluates.
 inline constexpr int most_together = 4;
 
-/// Bulk evaluation of an operation and of one that takes its result as the second input, in one
+/// Bulk evaluation of a solid and of an operation that takes its result as the second input, in one
 /// pass: what lies between is not written.
 struct Fused {
   /// out is the result of `next` of `first` and the result of `op`.
   using Value = void (*)(const void* op, const void* next, const float* const* in,
                          const float* first, float* out, size_t n);
+  /// The same of several such pairs, at most most_pairs, each with the result of the one before as
+  /// `first`, whose solids are alike.
+  using Several = void (*)(const void* const* ops, size_t count, const void* next,
+                           const float* const* in, const float* first, float* out, size_t n);
   Value value = nullptr;
   /// The kernel that `next` has alone, by which it is known.
   void (*next)(const void* op, const float* const* in, float* out, size_t n) = nullptr;
+  /// Null where several take as long as one after the other.
+  Several several = nullptr;
+  /// Whether two solids are alike: they differ in their middles only.
+  bool (*alike)(const void* a, const void* b) = nullptr;
 };
+/// Most pairs that one call evaluates.
+inline constexpr size_t most_pairs = 32;
 
 /// Bulk evaluation of n points, n a multiple of 16. `in` and `out` are arrays of n.
 struct Kernels {
@@ -107,6 +117,15 @@ struct Kernels {
   int place = -1;
   /// How it is evaluated with operations that take its result.
   std::span<const Fused> fused{};
+
+  /// How it is evaluated with one that has these kernels and takes its result; null where it is
+  /// not.
+  const Fused* fused_with(const Kernels& next) const {
+    for (const Fused& candidate : fused) {
+      if (candidate.next == next.value) return &candidate;
+    }
+    return nullptr;
+  }
 };
 
 class Operation;

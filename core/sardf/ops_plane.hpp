@@ -12,6 +12,7 @@ struct PlaneSolid {
   static constexpr Kind kind = Kind::plane;
   static constexpr int arity = 2;
   static constexpr bool distance = true;
+  using FusedWith = MinMaxOps;
 };
 
 struct Disc : PlaneSolid {
@@ -25,7 +26,14 @@ struct Disc : PlaneSolid {
   }
   template <class T>
   T eval(T x, T y) const {
-    return T(radius) - length(x - T(center[0]), y - T(center[1]));
+    return at_distance(length(x - T(center[0]), y - T(center[1])), x, y);
+  }
+
+  Vec2 middle() const { return center; }
+  bool is_alike(const Disc& other) const { return radius == other.radius; }
+  template <class T>
+  T at_distance(T from_middle, T, T) const {
+    return T(radius) - from_middle;
   }
 };
 

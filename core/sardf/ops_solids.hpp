@@ -26,7 +26,14 @@ struct Sphere : Solid {
   }
   template <class T>
   T eval(T x, T y, T z) const {
-    return T(radius) - length(x - T(center[0]), y - T(center[1]), z - T(center[2]));
+    return at_distance(length(x - T(center[0]), y - T(center[1]), z - T(center[2])), x, y, z);
+  }
+
+  Vec3 middle() const { return center; }
+  bool is_alike(const Sphere& other) const { return radius == other.radius; }
+  template <class T>
+  T at_distance(T from_middle, T, T, T) const {
+    return T(radius) - from_middle;
   }
 };
 
@@ -129,12 +136,25 @@ struct Cylinder : Solid {
   template <class T>
   T eval(T x, T y, T z) const {
     const auto [u, v, w] = frame.local(x, y, z);
-    const T wall = T(radius) - length(u, v);
-    if (!height) return wall;
-    return perpendicular_intersection(wall, T(0.5 * *height) - abs(w));
+    return capped(T(radius) - length(u, v), w);
+  }
+
+  Vec2 middle() const { return {center[0], center[1]}; }
+  bool is_alike(const Cylinder& other) const {
+    return frame.is_upright() && other.frame.is_upright() && radius == other.radius &&
+           height == other.height && (!height || center[2] == other.center[2]);
+  }
+  template <class T>
+  T at_distance(T from_middle, T, T, T z) const {
+    return capped(T(radius) - from_middle, z - T(center[2]));
   }
 
  private:
+  template <class T>
+  T capped(T wall, T w) const {
+    return height ? perpendicular_intersection(wall, T(0.5 * *height) - abs(w)) : wall;
+  }
+
   Frame frame;
 };
 

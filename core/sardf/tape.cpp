@@ -141,26 +141,50 @@ void find_together(std::vector<Instruction>& instructions) {
   }
 }
 
-// How the instruction, whose result is the second input of the next one only, is evaluated with it;
-// null where it is not.
-Fused::Value fused_with(const Instruction& instruction, const Instruction& next) {
-  for (const Fused& fused : instruction.kernels->fused) {
-    if (fused.next == next.kernels->value) return fused.value;
+// The steps that one pass evaluates with the next one.
+class Fusion {
+ public:
+  // last[s] is the step that uses the result of step s last; values from `first` on are results.
+  Fusion(const Code& code, std::span<const uint32_t> last) : code_(code), last_(last) {}
+
+  // How step s is evaluated with the next; null where it is not.
+  const Fused* of(size_t s) const {
+    if (s + 1 >= code_.steps.size() || last_[s] != s + 1) return nullptr;
+    const auto& in = code_.steps[s + 1].in;
+    if (in[1] != result(s) || in[0] == in[1]) return nullptr;
+    return kernels(s).fused_with(kernels(s + 1));
   }
-  return nullptr;
-}
 
-}  // namespace
+  // How many pairs from that of step s on one call evaluates.
+  size_t pairs(size_t s) const {
+    const Fused* const fused = of(s);
+    size_t count = 1;
+    while (fused->several && count < most_pairs && goes_on(*fused, s + 2 * count)) ++count;
+    return count;
+  }
 
-Tape::Tape(std::span<const Expression> outputs) : Tape(CodeOf(outputs).code()) {}
+ private:
+  // Whether the pair of step s takes the result of the one before, which nothing else needs, and
+  // its solid and that one's are alike.
+  bool goes_on(const Fused& fused, size_t s) const {
+    if (of(s) != &fused || last_[s - 1] != s + 1) return false;
+    const Code::Step &before = code_.steps[s - 2], &solid = code_.steps[s];
+    return code_.steps[s + 1].in[0] == result(s - 1) && solid.in == before.in &&
+           fused.alike(before.operation->object(), solid.operation->object());
+  }
 
-Tape::Tape(const Code& code) : source_(code.source), outputs_(code.outputs) {
+  const Kernels& kernels(size_t s) const { return code_.steps[s].operation->kernels(); }
+  uint32_t result(size_t s) const { return uint32_t(3 + code_.constants.size() + s); }
+
+  const Code& code_;
+  std::span<const uint32_t> last_;
+};
+
+// The step that uses each result last.
+constexpr uint32_t to_the_end = UINT32_MAX;
+std::vector<uint32_t> last_uses(const Code& code) {
   const uint32_t first = uint32_t(3 + code.constants.size());
-  for (uint32_t c = 3; c < first; ++c) constants_.push_back({c, code.constants[c - 3]});
-  registers_ = first;
-  // The step that uses a value last; outputs are used to the end.
-  constexpr uint32_t always = UINT32_MAX;
-  std::vector<uint32_t> last(code.steps.size(), 0), place(code.steps.size());
+  std::vector<uint32_t> last(code.steps.size(), 0);
   for (uint32_t s = 0; s < code.steps.size(); ++s) {
     for (int k = 0; k < code.steps[s].operation->info().arity; ++k) {
       const uint32_t value = code.steps[s].in[k];
@@ -168,14 +192,46 @@ Tape::Tape(const Code& code) : source_(code.source), outputs_(code.outputs) {
     }
   }
   for (const uint32_t value : code.outputs) {
-    if (value >= first) last[value - first] = always;
+    if (value >= first) last[value - first] = to_the_end;
   }
-  std::vector<uint32_t> free;
+  return last;
+}
+
+}  // namespace
+
+Tape::Tape(std::span<const Expression> outputs) : Tape(CodeOf(outputs).code()) {}
+
+Tape::Tape(const Code& code) : source_(code.source), outputs_(code.outputs) {
+  for (uint32_t c = 0; c < code.constants.size(); ++c) {
+    constants_.push_back({3 + c, code.constants[c]});
+  }
   instructions_.reserve(code.steps.size());
-  for (uint32_t s = 0; s < code.steps.size(); ++s) {
-    const Operation* operation = code.steps[s].operation;
-    Instruction instruction{operation, &operation->kernels(), operation->object(), code.steps[s].in,
-                            0};
+  for (const Code::Step& step : code.steps) {
+    const Operation* operation = step.operation;
+    instructions_.push_back({operation, &operation->kernels(), operation->object(), step.in, 0});
+  }
+  std::vector<uint32_t> last = last_uses(code);
+  find_pairs(code, last);
+  place_results(std::move(last));
+  find_together(instructions_);
+}
+
+void Tape::find_pairs(const Code& code, std::span<const uint32_t> last) {
+  const Fusion fusion(code, last);
+  for (size_t s = 0; s < instructions_.size();) {
+    Instruction& instruction = instructions_[s];
+    instruction.fused = fusion.of(s);
+    if (instruction.fused) instruction.pairs = uint32_t(fusion.pairs(s));
+    s += instruction.fused ? 2 * instruction.pairs : 1;
+  }
+}
+
+void Tape::place_results(std::vector<uint32_t> last) {
+  const uint32_t first = uint32_t(3 + constants_.size());
+  registers_ = first;
+  std::vector<uint32_t> free, place(instructions_.size());
+  for (uint32_t s = 0; s < instructions_.size(); ++s) {
+    Instruction& instruction = instructions_[s];
     // The result may not overwrite an input: kernels read and write in steps of their own width.
     if (free.empty()) {
       instruction.out = uint32_t(registers_++);
@@ -191,16 +247,12 @@ Tape::Tape(const Code& code) : source_(code.source), outputs_(code.outputs) {
       in = place[step];
       if (last[step] != s) continue;
       free.push_back(in);
-      last[step] = always;
-      if (step + 1 == s && k == 1)
-        instructions_.back().fused = fused_with(instructions_.back(), instruction);
+      last[step] = to_the_end;
     }
-    instructions_.push_back(instruction);
   }
   for (uint32_t& value : outputs_) {
     if (value >= first) value = place[value - first];
   }
-  find_together(instructions_);
 }
 
 }  // namespace sardf

@@ -20,8 +20,10 @@ struct Instruction {
   // How many instructions from this one on a single call may evaluate (Kernels::together): 1 or, at
   // the first of several, their number.
   uint32_t together = 1;
-  // If one call evaluates this one and the next, and nothing else needs this one's result: by what.
-  Fused::Value fused = nullptr;
+  // If one call evaluates this one and the next, and nothing else needs this one's result: by what,
+  // and how many such pairs from this one on it evaluates.
+  const Fused* fused = nullptr;
+  uint32_t pairs = 1;
 };
 
 /// A program whose values are numbered: 0, 1, 2 are x, y, z, then come the constants, then the
@@ -61,6 +63,10 @@ class Tape {
   const std::shared_ptr<const void>& source() const { return source_; }
 
  private:
+  // Both with last[s], the instruction that uses the result of s last.
+  void find_pairs(const Code& code, std::span<const uint32_t> last);
+  void place_results(std::vector<uint32_t> last);
+
   std::shared_ptr<const void> source_;
   std::vector<Instruction> instructions_;
   std::vector<Constant> constants_;

@@ -1,4 +1,5 @@
-// Instructions that one pass evaluates with the next one: which they are, and that results stay.
+// Instructions that one pass evaluates with the next one, and pairs that one call evaluates: which
+// they are, and that results stay.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -13,10 +14,20 @@ namespace {
 
 size_t fused(const Tape& tape) {
   size_t count = 0;
-  for (const Instruction& instruction : tape.instructions()) count += instruction.fused != nullptr;
+  for (const Instruction& i : tape.instructions()) count += i.fused ? i.pairs : 0;
   return count;
 }
 size_t fused(const Field& field) { return fused(Tape(field.expression())); }
+
+// How many pairs each call evaluates.
+std::vector<uint32_t> calls(const Tape& tape) {
+  std::vector<uint32_t> of;
+  for (const Instruction& i : tape.instructions()) {
+    if (i.fused) of.push_back(i.pairs);
+  }
+  return of;
+}
+std::vector<uint32_t> calls(const Field& field) { return calls(Tape(field.expression())); }
 
 Field ball(double x) { return make_field("sphere", {Vec3{x, 0.25, 0}, 1.0}); }
 Field block() { return make_field("box", {Vec3{}, Vec3{3, 2, 1}}); }
@@ -49,6 +60,61 @@ TEST(Fused, IsNothingInBlendsWithArcs) {
   EXPECT_EQ(fused(joined("union", {block(), bar()}, make_blend("sardf", {0.5}))), 0u);
 }
 
+using Calls = std::vector<uint32_t>;
+
+Field sphere(double x, double radius = 1) {
+  return make_field("sphere", {Vec3{x, -x, 0.5 * x}, radius});
+}
+Field upright(double x, const Value& height = Value(), double z = 0, double radius = 1) {
+  return make_field("cylinder", {Vec3{x, 0.5, z}, Vec3{0, 0, 1}, radius, height});
+}
+Field tilted(double x) {
+  return make_field("cylinder", {Vec3{x, 0.5, 0}, Vec3{0, 1, 1}, 1.0, Value()});
+}
+Field disc(double x) { return make_field("disc", {std::array{x, 0.5}, 1.0}); }
+
+TEST(Fused, SolidsThatDifferInTheirMiddlesTakeOneCall) {
+  for (const char* name : {"union", "intersection", "difference"}) {
+    EXPECT_EQ(calls(joined(name, {block(), sphere(0), sphere(1), sphere(2)})), Calls{3}) << name;
+    EXPECT_EQ(calls(joined(name, {block(), upright(0), upright(1)})), Calls{2}) << name;
+    EXPECT_EQ(calls(joined(name, {block(), upright(0, 2.0), upright(1, 2.0)})), Calls{2}) << name;
+    EXPECT_EQ(calls(joined(name, {disc(0), disc(1), disc(2)})), Calls{2}) << name;
+  }
+}
+
+TEST(Fused, SolidsThatDifferElsewhereTakeCallsOfTheirOwn) {
+  const auto cut = [](const Field& a, const Field& b) {
+    return calls(joined("difference", {block(), a, b}));
+  };
+  const Calls one_by_one{1, 1};
+  EXPECT_EQ(cut(sphere(0), sphere(1, 1.5)), one_by_one);
+  EXPECT_EQ(cut(sphere(0), upright(1)), one_by_one);
+  EXPECT_EQ(cut(upright(0), upright(1, Value(), 0, 1.5)), one_by_one);
+  EXPECT_EQ(cut(upright(0), upright(1, 2.0)), one_by_one);
+  EXPECT_EQ(cut(upright(0, 2.0), upright(1, 2.5)), one_by_one);
+  EXPECT_EQ(cut(upright(0, 2.0), upright(1, 2.0, 0.25)), one_by_one);
+  EXPECT_EQ(cut(tilted(0), tilted(1)), one_by_one);
+  EXPECT_EQ(cut(sphere(0), make_field("sphere", {Vec3{1e100, 0, 0}, 1.0})), one_by_one);
+  const Field moved = make_field("translate", {sphere(1), Vec3{1, 2, 3}});
+  EXPECT_EQ(cut(sphere(0), moved), one_by_one);
+}
+
+TEST(Fused, SolidsTakeOneCallOnlyWhereNothingNeedsWhatLiesBetween) {
+  const Field two = joined("difference", {block(), sphere(0), sphere(1)});
+  const Field three = joined("difference", {two, sphere(2)});
+  EXPECT_EQ(calls(three), Calls{3});
+  const std::vector outputs{three.expression(), two.expression()};
+  EXPECT_EQ(calls(Tape(outputs)), (Calls{2, 1}));
+  const Field other = joined("union", {two, sphere(2)});
+  EXPECT_EQ(calls(other), (Calls{2, 1}));
+}
+
+TEST(Fused, OneCallTakesNoMoreThanItHasRoomFor) {
+  std::vector<Field> many{block()};
+  for (size_t k = 0; k < 2 * most_pairs + 3; ++k) many.push_back(sphere(0.1 * double(k)));
+  EXPECT_EQ(calls(joined("union", many)), (Calls{most_pairs, most_pairs, 3}));
+}
+
 // In the last block, too, which is no whole one, and where a result stands for an output.
 TEST(Fused, GivesTheBitsOfOneAfterTheOther) {
   constexpr size_t n = 1000;
@@ -59,13 +125,14 @@ TEST(Fused, GivesTheBitsOfOneAfterTheOther) {
   at[30] = std::numeric_limits<float>::quiet_NaN();
   at[60] = std::numeric_limits<float>::infinity();
   for (const char* name : {"union", "intersection", "difference"}) {
-    const std::vector<Field> solids{block(), bar(), ball(1), ball(-1)};
+    std::vector<Field> solids{block(), bar(), ball(1), ball(-1), upright(0.3, 1.0)};
+    for (int k = 0; k < 40; ++k) solids.push_back(upright(0.1 * k - 2, 2.0, 0.25, 0.375));
     // All solids are outputs as well: they are evaluated one by one.
     std::vector<Expression> outputs{joined(name, solids).expression()};
     for (const Field& solid : solids) outputs.push_back(solid.expression());
     const Evaluator apart(outputs), whole(outputs[0]);
     ASSERT_EQ(fused(apart.tape()), 0u);
-    ASSERT_EQ(fused(whole.tape()), 3u);
+    ASSERT_EQ(fused(whole.tape()), solids.size() - 1);
     std::vector<float> expected(n * outputs.size()), got(n);
     apart.values(at.data(), n, expected.data());
     whole.values(at.data(), n, got.data());

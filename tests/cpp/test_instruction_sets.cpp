@@ -8,6 +8,7 @@
 #include <map>
 
 #include "laws.hpp"
+#include "sardf/constructor.hpp"
 #include "sardf/kernels.hpp"
 
 namespace sardf {
@@ -154,14 +155,6 @@ TEST(InstructionSets, OperationsTogetherGiveTheBitsOfEach) {
   }
 }
 
-/// How the second takes the result of the first in one pass; null where it cannot.
-const Fused* fused_with(const Kernels& kernels, const Kernels& next) {
-  for (const Fused& fused : kernels.fused) {
-    if (fused.next == next.value) return &fused;
-  }
-  return nullptr;
-}
-
 void expect_fused_gives_the_bits_of_each(InstructionSet set, const Operation& op,
                                          const Operation& next, Random& r) {
   const Kernels& kernels = *listed_kernels(set, op.info().name);
@@ -174,7 +167,7 @@ void expect_fused_gives_the_bits_of_each(InstructionSet set, const Operation& op
   kernels.value(op.object(), at.data(), second.data(), points);
   const std::array<const float*, max_arity> both{first.data(), second.data()};
   next_kernels.value(next.object(), both.data(), expected.data(), points);
-  fused_with(kernels, next_kernels)
+  kernels.fused_with(next_kernels)
       ->value(op.object(), next.object(), at.data(), first.data(), got.data(), points);
   for (size_t i = 0; i < points; ++i) {
     EXPECT_TRUE(same(got[i], expected[i]))
@@ -192,7 +185,7 @@ TEST(InstructionSets, FusedOperationsGiveTheBitsOfOneAfterTheOther) {
     for (const laws::ListedOperation& other : laws::listed_operations()) {
       for (const InstructionSet set : instruction_sets()) {
         const Kernels& kernels = *listed_kernels(set, listed.name);
-        if (!fused_with(kernels, *listed_kernels(set, other.name))) continue;
+        if (!kernels.fused_with(*listed_kernels(set, other.name))) continue;
         ++pairs;
         for (int i = 0; i < laws::effort(20); ++i) {
           expect_fused_gives_the_bits_of_each(set, *listed.random(r), *other.random(r), r);
@@ -200,8 +193,71 @@ TEST(InstructionSets, FusedOperationsGiveTheBitsOfOneAfterTheOther) {
       }
     }
   }
-  // Nine solids, the union, the intersection and the difference.
-  EXPECT_EQ(pairs, 27 * int(instruction_sets().size()));
+  // Nine solids and four of the plane; the union, the intersection and the difference.
+  EXPECT_EQ(pairs, 39 * int(instruction_sets().size()));
+}
+
+OperationPointer operation(const char* name, const std::vector<Value>& values) {
+  return make_field(name, values).expression()->operation;
+}
+
+/// Solids that differ in their middles only.
+std::vector<OperationPointer> alike(int kind, size_t count, Random& r) {
+  const double radius = r.uniform(0.1, 3), height = r.uniform(0.1, 3), z = r.ordinary();
+  std::vector<OperationPointer> all;
+  while (all.size() < count) {
+    const double x = r.chance(0.1) ? r.spicy(1e30) : r.ordinary(), y = r.ordinary();
+    const auto bar = [&](const Value& of) {
+      return operation("cylinder", {Vec3{x, y, z}, Vec3{0, 0, 1}, radius, of});
+    };
+    all.push_back(kind == 0   ? operation("sphere", {Vec3{x, y, r.ordinary()}, radius})
+                  : kind == 1 ? operation("disc", {std::array{x, y}, radius})
+                  : kind == 2 ? bar(Value())
+                              : bar(height));
+  }
+  return all;
+}
+
+void expect_several_give_the_bits_of_each(InstructionSet set, const Operation& next,
+                                          const std::vector<OperationPointer>& ops, Random& r) {
+  const Kernels &kernels = *listed_kernels(set, ops[0]->info().name),
+                &next_kernels = *listed_kernels(set, next.info().name);
+  const Fused& fused = *kernels.fused_with(next_kernels);
+  const std::array<Row, max_arity> in = arguments(r);
+  const std::array<const float*, max_arity> at{in[0].data(), in[1].data(), in[2].data()};
+  std::vector<const void*> objects;
+  Row expected = in[3], got;
+  for (const OperationPointer& op : ops) {
+    ASSERT_TRUE(fused.alike(ops[0]->object(), op->object()));
+    objects.push_back(op->object());
+    const Row first = expected;
+    fused.value(op->object(), next.object(), at.data(), first.data(), expected.data(), points);
+  }
+  fused.several(objects.data(), objects.size(), next.object(), at.data(), in[3].data(), got.data(),
+                points);
+  for (size_t i = 0; i < points; ++i) {
+    EXPECT_TRUE(same(got[i], expected[i]))
+        << instruction_set_name(set) << ", " << ops.size() << " of " << ops[0]->info().name << ", "
+        << next.info().name << ": " << got[i] << ", one after the other " << expected[i] << " at "
+        << in[0][i] << ", " << in[1][i] << ", " << in[2][i] << " of " << in[3][i];
+  }
+}
+
+TEST(InstructionSets, SolidsThatAreAlikeGiveTheBitsOfOneAfterTheOther) {
+  Random r(88);
+  for (const char* name : {"union", "intersection", "difference"}) {
+    const Field joined = make_field(name, {std::vector{make_field("sphere", {Vec3{}, 1.0}),
+                                                       make_field("box", {Vec3{}, Vec3{1, 1, 1}})},
+                                           min_max_blend()});
+    const OperationPointer next = joined.expression()->operation;
+    for (int i = 0; i < laws::effort(200); ++i) {
+      const size_t count = r.chance(0.1) ? most_pairs : size_t(2 + r.below(5));
+      const std::vector<OperationPointer> ops = alike(i % 4, count, r);
+      for (const InstructionSet set : instruction_sets()) {
+        expect_several_give_the_bits_of_each(set, *next, ops, r);
+      }
+    }
+  }
 }
 
 // The tape on the kernels of one set.

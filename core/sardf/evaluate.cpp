@@ -72,12 +72,6 @@ size_t run_from(const Instruction* i, const double* const* in, double* const* at
   return 1;
 }
 
-template <class T>
-T* scratch(size_t n) {
-  thread_local Scratch<T> storage;
-  return storage.get(n);
-}
-
 // Copies the coordinates into registers 0, 1, 2, the last point repeated up to the padded length.
 template <class T>
 void load_coordinates(const T* const* xyz, size_t n, T* registers) {
@@ -88,11 +82,23 @@ void load_coordinates(const T* const* xyz, size_t n, T* registers) {
   }
 }
 
+// A thread's room for `size` values, with the constants of a tape in their registers up to n, which
+// stay there until another tape's are asked for.
 template <class T>
-void load_constants(const Tape& tape, size_t n, T* registers) {
+T* registers_of(const Tape& tape, size_t size, size_t n) {
+  thread_local Scratch<T> storage;
+  thread_local struct {
+    uint64_t tape;
+    T* at;
+    size_t n;
+  } known{};
+  T* const registers = storage.get(size);
+  if (known.tape == tape.number() && known.at == registers && known.n >= n) return registers;
   for (const Tape::Constant& c : tape.constants()) {
-    std::fill_n(registers + c.reg * block_size, padded<T>(n), T(c.value));
+    std::fill_n(registers + c.reg * block_size, n, T(c.value));
   }
+  known = {tape.number(), registers, n};
+  return registers;
 }
 
 bool is_aligned(const void* memory) {
@@ -104,11 +110,10 @@ bool is_aligned(const void* memory) {
 // results that are outputs.
 template <class T>
 T* const* place_registers(const Tape& tape, const T* const* xyz, size_t n, T* const* out) {
-  T* const registers = scratch<T>(tape.registers() * block_size);
+  T* const registers = registers_of<T>(tape, tape.registers() * block_size, padded<T>(n));
   thread_local Scratch<T*> places;
   T** at = places.get(tape.registers());
   for (size_t r = 0; r < tape.registers(); ++r) at[r] = registers + r * block_size;
-  load_constants(tape, n, registers);
   const bool whole = n == padded<T>(n);
   if (whole && std::all_of(xyz, xyz + 3, is_aligned)) {
     for (size_t axis = 0; axis < 3; ++axis) at[axis] = const_cast<T*>(xyz[axis]);
@@ -156,7 +161,7 @@ template <class T>
 void gradient_of_block(const Tape& tape, const T* const* xyz, size_t n, T* out,
                        T* const* gradient) {
   const size_t m = padded<T>(n), registers_end = tape.registers() * block_size;
-  T* registers = scratch<T>(4 * registers_end + max_arity * block_size);
+  T* registers = registers_of<T>(tape, 4 * registers_end + max_arity * block_size, m);
   T* by[max_arity];
   for (int k = 0; k < max_arity; ++k) by[k] = registers + 4 * registers_end + k * block_size;
   const auto slope = [&](uint32_t reg, int axis) {
@@ -165,7 +170,6 @@ void gradient_of_block(const Tape& tape, const T* const* xyz, size_t n, T* out,
   // Coordinates and constants come first; their slopes are 1 and 0 and are not stored.
   const uint32_t first_stored = uint32_t(3 + tape.constants().size());
   load_coordinates(xyz, n, registers);
-  load_constants(tape, n, registers);
   for (const Instruction& i : tape.instructions()) {
     std::array<const T*, max_arity> in;
     for (size_t k = 0; k < in.size(); ++k) in[k] = registers + i.in[k] * block_size;

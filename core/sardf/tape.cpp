@@ -1,6 +1,7 @@
 #include "sardf/tape.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <map>
 #include <tuple>
 #include <unordered_map>
@@ -180,6 +181,11 @@ class Fusion {
   std::span<const uint32_t> last_;
 };
 
+uint64_t next_number() {
+  static std::atomic<uint64_t> last{0};
+  return ++last;
+}
+
 // The step that uses each result last.
 constexpr uint32_t to_the_end = UINT32_MAX;
 std::vector<uint32_t> last_uses(const Code& code) {
@@ -201,7 +207,8 @@ std::vector<uint32_t> last_uses(const Code& code) {
 
 Tape::Tape(std::span<const Expression> outputs) : Tape(CodeOf(outputs).code()) {}
 
-Tape::Tape(const Code& code) : source_(code.source), outputs_(code.outputs) {
+Tape::Tape(const Code& code)
+    : source_(code.source), outputs_(code.outputs), number_(next_number()) {
   for (uint32_t c = 0; c < code.constants.size(); ++c) {
     constants_.push_back({3 + c, code.constants[c]});
   }

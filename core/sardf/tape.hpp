@@ -59,6 +59,8 @@ class Tape {
     double value;
   };
   const std::vector<Constant>& constants() const { return constants_; }
+  /// Only copies of a tape have the same number.
+  uint64_t number() const { return number_; }
   /// What keeps the operations alive.
   const std::shared_ptr<const void>& source() const { return source_; }
 
@@ -72,6 +74,7 @@ class Tape {
   std::vector<Constant> constants_;
   std::vector<uint32_t> outputs_;
   size_t registers_ = 3;
+  uint64_t number_ = 0;
 };
 
 }  // namespace sardf

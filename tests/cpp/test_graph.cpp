@@ -66,6 +66,33 @@ TEST(Graph, RegistersAreReused) {
   EXPECT_LT(Evaluator(chain).tape().registers(), 10u);
 }
 
+// They stay in their registers from one block to the next.
+TEST(Graph, ConstantsAreThoseOfTheProgramAtEveryPoint) {
+  constexpr size_t most = Evaluator::block_size;
+  const Evaluator one(constant(2) * x + constant(3)), other(constant(5) * x * y + constant(7)),
+      copy = one;
+  std::vector<float> at(most, 0.5f), out(most);
+  const auto expect = [&](const Evaluator& evaluator, size_t n, float value) {
+    float* to = out.data();
+    evaluator.block(at.data(), at.data(), at.data(), n, &to);
+    for (size_t i = 0; i < n; ++i) EXPECT_EQ(out[i], value) << i << " of " << n;
+  };
+  for (const size_t n : {size_t(1), size_t(16), size_t(17), most, size_t(5)}) {
+    expect(one, n, 4);
+    expect(one, n, 4);
+    expect(other, n, 8.25f);
+    expect(copy, n, 4);
+  }
+  for (const size_t n : {size_t(1), most}) expect(one, n, 4);
+  // The registers of gradients are others, with the same beginning.
+  std::vector<float> slope(3 * most);
+  float* const to[3] = {&slope[0], &slope[most], &slope[2 * most]};
+  other.gradient_block(at.data(), at.data(), at.data(), most, out.data(), to);
+  EXPECT_EQ(out[most - 1], 8.25f);
+  EXPECT_EQ(to[0][most - 1], 2.5f);
+  expect(one, most, 4);
+}
+
 TEST(Graph, GradientsOfCoordinatesAndConstants) {
   const double at[3] = {2, 3, 4};
   const auto gradient = [&](const Expression& of) {

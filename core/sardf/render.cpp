@@ -64,43 +64,21 @@ int slope_cells(const RenderOptions& options) {
   return pixels < 5e4 ? 4 : pixels < 1e6 ? 8 : 16;
 }
 
-// The most that places in single precision are off the rays' true ones.
-double misplacement(const Rays& rays, const BoundingBox& bounds, const RenderOptions& options) {
-  double steepest = 0;
-  for (const double x : {0, options.width}) {
-    for (const double y : {0, options.height}) {
-      steepest = std::max(steepest, norm(rays.through(x, y).along));
-    }
-  }
-  // Rays that meet the box begin no farther from it than they go on.
-  const Stretch depths = rays.depths(bounds);
-  const double way = 0.5 * bounds.diagonal() + 2 * (depths.end - depths.begin) * steepest;
-  return rounding_of_places * rounding_unit * way;
-}
-
 // What the rays in single precision need; false where that is not good enough.
 bool set_frame(Subject& subject, const RenderOptions& options) {
   const BoundingBox& bounds = subject.bounds;
   const double slope = subject.slopes.largest();
-  const double misplaced = misplacement(subject.rays, bounds, options);
   const double error = subject.error_single;
   if (!is_single(subject.solid.whole())) return false;
-  const Stretch depths = subject.rays.depths(bounds);
-  const double range = depths.end - depths.begin;
+  RayFrame frame = frame_of_places(subject.rays, bounds, options.width, options.height);
+  const double range = double(frame.range);
   if (!(error < most_single_error * bounds.diagonal()) || !(range > 0)) return false;
   // Of a tolerance that is not many roundings nothing would be left.
   if (!(subject.tolerance > least_single_tolerance * range)) return false;
-  RayFrame& frame = subject.frame;
-  for (size_t axis = 0; axis < 3; ++axis) {
-    frame.middle[axis] = float(bounds.center()[axis]);
-    frame.half[axis] = float(0.5 * bounds.size()[axis]);
-  }
-  frame.begin = depths.begin;
-  frame.range = float(range * (1 + depth_slack));
   frame.error = float(error * (1 + depth_slack));
-  frame.misplaced = float(misplaced * (1 + depth_slack));
   frame.per_slope = float((1 - depth_slack) / slope);
   frame.tolerance = float(subject.tolerance * tolerance_kept);
+  subject.frame = frame;
   return true;
 }
 

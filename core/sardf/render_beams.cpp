@@ -113,6 +113,22 @@ std::optional<Ray> ray_at(const Subject& subject, const Beam& beam, int x, int y
   return ray.clear <= ray.end ? std::optional(ray) : std::nullopt;
 }
 
+// The most that places in single precision are off the rays' true ones.
+double misplacement(const Rays& rays, const BoundingBox& bounds, int width, int height) {
+  double steepest = 0;
+  for (const double x : {0, width}) {
+    for (const double y : {0, height})
+      steepest = std::max(steepest, norm(rays.through(x, y).along));
+  }
+  // Rays that meet the box begin no farther from it than they go on.
+  const Stretch depths = rays.depths(bounds);
+  const double way = 0.5 * bounds.diagonal() + 2 * (depths.end - depths.begin) * steepest;
+  // Right and down are perpendicular; together they are at most sqrt(2) times the corner's.
+  const Spread square = rays.spread(0.5 * width, 0.5 * height, RaySquare::edge);
+  const double pixels = 1.5 * square.at(depths.end);
+  return rounding_of_places * rounding_unit * (way + pixels);
+}
+
 std::array<float, 3> floats(const Vec3& a) { return {float(a[0]), float(a[1]), float(a[2])}; }
 
 RaySquare square_of(const Subject& subject, const Beam& beam, int width, int height) {
@@ -157,6 +173,19 @@ std::vector<Beam> find_beams(const Subject& subject, const Tile& tile, Watch& wa
   }
   std::erase_if(beams, [&](const Beam& beam) { return beam.clear >= depths.end; });
   return beams;
+}
+
+RayFrame frame_of_places(const Rays& rays, const BoundingBox& bounds, int width, int height) {
+  RayFrame frame;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    frame.middle[axis] = float(bounds.center()[axis]);
+    frame.half[axis] = float(0.5 * bounds.size()[axis]);
+  }
+  const Stretch depths = rays.depths(bounds);
+  frame.begin = depths.begin;
+  frame.range = float((depths.end - depths.begin) * (1 + depth_slack));
+  frame.misplaced = float(misplacement(rays, bounds, width, height) * (1 + depth_slack));
+  return frame;
 }
 
 void begin_rays(const Subject& subject, const Beam& beam, int width, int height, RayTable& table) {

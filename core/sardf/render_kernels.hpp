@@ -50,8 +50,7 @@ struct RayKernelsOf {
         along.store(&table.along[axis][at]);
         // A ray that moves less than this has left no box along the axis where it ends.
         const L inverse = L(1.0) / select(abs(along) > L(1e-18), along, L(1e-18));
-        const L half = L(frame.half[axis]) + L(rounding_of_places * rounding_unit) *
-                                                 (abs(from) + L(frame.range) * abs(along));
+        const L half(frame.half[axis] + frame.misplaced);
         const L low = (-half - from) * inverse, high = (half - from) * inverse;
         enters = max(enters, min(low, high) - slack);
         leaves = min(leaves, max(low, high) + slack);

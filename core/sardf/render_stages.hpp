@@ -82,6 +82,9 @@ inline constexpr int smallest_edge = RaySquare::edge;
 /// The beams of a tile that are not proven to show nothing; smallest_edge pixels wide.
 std::vector<Beam> find_beams(const Subject& subject, const Tile& tile, Watch& watch);
 
+/// What a frame has to say of places and depths; the rest of it is left.
+RayFrame frame_of_places(const Rays& rays, const BoundingBox& bounds, int width, int height);
+
 /// Appends the rays of a beam's pixels. The picture's edge cuts beams.
 void begin_rays(const Subject& subject, const Beam& beam, int width, int height, RayTable& table);
 /// Appends those of several beams as single rays.

@@ -1,11 +1,13 @@
 // Many rays side by side in single precision; private to core/sardf/render*.cpp.
 //
 // Coordinates count from the middle of the box and depths from where the box begins, so that the
-// roundings are shares of the box's size wherever the camera stands. With u = 2^-24, what a ray's
-// place is off by is at most rounding_of_places u times the way from the middle to the place where
-// the ray begins and on to its end: beginnings and directions are rounded four times each, their
-// sum twice, and four more are for ends that are taken too far and places that are then moved back
-// into the box.
+// roundings are shares of the box's size wherever the camera stands. A place is from + depth along,
+// and both are those of a square's middle ray and what a pixel to the right and one down adds.
+// With u = 2^-24, three roundings are of the sums (|middle ray|, and twice what was added to it),
+// two of each part that is added, and two of the product and the sum with it: the place is off by
+// at most 5 u times the way from the middle to where the ray begins and on to the place, and 4 u
+// times the pixels' share of it. One more is for the box's own half. A place is then moved into the
+// box, which is convex: it comes no farther from any point there.
 #pragma once
 
 #include <array>
@@ -16,7 +18,7 @@
 namespace sardf::rendering {
 
 inline constexpr double rounding_unit = 0x1p-24;
-inline constexpr double rounding_of_places = 16;
+inline constexpr double rounding_of_places = 6;
 /// By which depths and lengths are taken shorter, or ends farther, than computed; as a share.
 inline constexpr double depth_slack = 0x1p-22;
 
@@ -29,7 +31,7 @@ struct RayFrame {
   double begin = 0;                       // depths in the table count from here
   float range = 0;                        // the depth of the box's end
   float error = 0;                        // of the field's values
-  float misplaced = 0;                    // of places, in scene units
+  float misplaced = 0;                    // the most that places are off, in scene units
   float per_slope = 0;                    // one by the bound of the slope, not more
   float tolerance = 0;                    // scene units, along rays
 };

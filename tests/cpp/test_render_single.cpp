@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "laws.hpp"
+#include "sardf/constructor.hpp"
 #include "sardf/render_kernels.hpp"
 #include "sardf/render_rounding.hpp"
+#include "sardf/render_stages.hpp"
 
 namespace sardf {
 namespace {
@@ -67,6 +69,65 @@ TEST(RenderSingle, ValuesAreOffByNoMoreThanTheBound) {
   // A bound that is seldom there, or far too large, would hold as well.
   EXPECT_GT(bounded, all / 4);
   EXPECT_GT(largest_share, 0.02);
+}
+
+Camera camera_on(Random& r, const BoundingBox& box, int width, int height) {
+  Camera camera = frame_camera(box, width, height, {r.ordinary(), r.ordinary(), r.ordinary()});
+  if (r.chance(0.5)) camera.type = Camera::Type::orthographic;
+  camera.ortho_scale = box.diagonal() * r.decades(-0.5, 1);
+  camera.lens *= r.decades(-0.3, 1);
+  camera.shift_x = r.uniform(-0.3, 0.3);
+  return camera;
+}
+
+// The largest share of the bound by which places of a square's rays are off, where the true ones
+// lie in the box.
+double largest_share_off(Random& r, const rendering::Subject& subject, int width, int height) {
+  constexpr int edge = rendering::smallest_edge;
+  const rendering::Beam beam{edge * (r.below((width + edge - 1) / edge) + 0.5),
+                             edge * (r.below((height + edge - 1) / edge) + 0.5), edge, 0};
+  const auto table = std::make_unique<RayTable>();
+  rendering::begin_rays(subject, beam, width, height, *table);
+  double largest = 0;
+  for (size_t i = 0; i < table->count; ++i) {
+    const float depth = float(r.uniform(0, 1)) * subject.frame.range;
+    const Vec3 exact = subject.rays.through(double(table->x[i]) + 0.5, double(table->y[i]) + 0.5)
+                           .at(subject.frame.begin + double(depth)) -
+                       subject.bounds.center();
+    Vec3 off;
+    bool inside = table->x[i] < float(width) && table->y[i] < float(height);
+    for (int axis = 0; axis < 3; ++axis) {
+      inside = inside && std::abs(exact[axis]) <= 0.5 * subject.bounds.size()[axis];
+      const float place = table->from[size_t(axis)][i] + depth * table->along[size_t(axis)][i];
+      off[axis] = double(place) - exact[axis];
+    }
+    if (inside) largest = std::max(largest, norm(off) / double(subject.frame.misplaced));
+  }
+  return largest;
+}
+
+TEST(RenderSingle, PlacesAreOffByNoMoreThanTheBound) {
+  double largest_share = 0;
+  const LocalEvaluator solid{Evaluator(make_field("sphere", {Vec3{}, 1.0}).expression()),
+                             BoundingBox{{-1, -1, -1}, {1, 1, 1}}};
+  for (int k = 0; k < laws::effort(400); ++k) {
+    Random r{uint64_t(k)};
+    const BoundingBox box = box_somewhere(r);
+    const int width = 1 + r.below(r.chance(0.3) ? 8 : 1000), height = 1 + r.below(1000);
+    rendering::Subject subject{solid,
+                               box,
+                               rendering::Rays(camera_on(r, box, width, height), width, height),
+                               rendering::LocalSlopes(solid.whole(), box, 1, [] {}),
+                               1e-3,
+                               0};
+    subject.frame = rendering::frame_of_places(subject.rays, box, width, height);
+    for (int square = 0; square < 20; ++square) {
+      const double share = largest_share_off(r, subject, width, height);
+      EXPECT_LE(share, 1) << k << ": " << width << " x " << height;
+      largest_share = std::max(largest_share, share);
+    }
+  }
+  EXPECT_GT(largest_share, 0.05);
 }
 
 // Numbers as rays have them, ended ones and such as have no last sample among them.

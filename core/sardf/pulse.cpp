@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 
 namespace sardf {
 
@@ -10,7 +11,14 @@ namespace {
 // A cancel has to take effect within 100 ms.
 constexpr long long interval = 10'000'000;
 
+// Asked for every few microseconds: to some milliseconds, in a fifth of the time, where there is
+// such a clock.
 long long now() {
+#ifdef CLOCK_MONOTONIC_COARSE
+  timespec time{};
+  if (clock_gettime(CLOCK_MONOTONIC_COARSE, &time) == 0)
+    return time.tv_sec * 1'000'000'000LL + time.tv_nsec;
+#endif
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
              std::chrono::steady_clock::now().time_since_epoch())
       .count();

@@ -33,14 +33,9 @@ Spread Rays::spread(double x, double y, double edge) const {
 }
 
 double Rays::shortest_step(double x, double y, double edge) const {
-  if (!perspective_) return 1 / norm(view_);
-  double longest = 0;
-  for (const double u : {x - 0.5 * edge, x + 0.5 * edge}) {
-    for (const double v : {y - 0.5 * edge, y + 0.5 * edge}) {
-      longest = std::max(longest, norm(through(u, v).along));
-    }
-  }
-  return 1 / longest;
+  const Vec3 along = through(x, y).along;
+  const Spread corner = spread(x, y, edge);
+  return 1 / std::sqrt(dot(along, along) + 2 * corner.lean + corner.growth * corner.growth);
 }
 
 Stretch Rays::depths(const BoundingBox& box) const {

@@ -12,7 +12,8 @@ struct Line {
 };
 
 /// How far the rays of a square of pixels stray from that through its middle: at the depth t by at
-/// most constant + t growth; and by `lean` as dot(along, growth's direction).
+/// most constant + t growth, at the corners; `lean` is the most that dot(along, what a corner adds
+/// to it) is.
 struct Spread {
   double constant = 0, growth = 0, lean = 0;
   double at(double t) const { return constant + t * growth; }

@@ -77,6 +77,10 @@ struct FusedOf;
 template <class Op>
 concept HasMiddle = requires(const Op& op) { op.middle(); };
 
+/// Operations of two values whose result is one of them, in every bit.
+template <class Op>
+concept Selects = requires { Op::selects; };
+
 template <class Op, class Isa>
 struct KernelsOf {
   static constexpr int arity = Op::arity;
@@ -140,15 +144,20 @@ struct KernelsOf {
   static constexpr Kernels table = make_table();
 };
 
-/// The kernel of several solids, each joined to the result before by the same minimum or maximum,
-/// with one root for all: rounding keeps the order of numbers, so the least root is that of the
-/// least square, and the largest of the solids' values is that of the nearest middle. It gives, in
-/// every bit, what one after the other gives.
+/// The kernel of several solids, each joined to the result before by the same operation, with one
+/// root for all where that does: rounding keeps the order of numbers, so the least root is that of
+/// the least square, and the largest of the solids' values is that of the nearest middle. A minimum
+/// or maximum of all is that with this one; and where a blend leaves the result before as it is for
+/// this one, it does so for the others. In every bit it is what one after the other gives.
 template <class Op, class Isa>
 struct SeveralOf {
   using Alone = KernelsOf<Op, Isa>;
   using L = typename Alone::L;
+  using Point = typename Alone::Point;
   using Middle = std::array<float, std::tuple_size_v<decltype(std::declval<Op>().middle())>>;
+
+  template <class Next>
+  static constexpr bool works = Selects<Next> || requires(Next next, L x) { next.keeps(x, x); };
 
   template <class Next>
   static void value(const void* const* objects, size_t count, const void* next_object,
@@ -159,15 +168,22 @@ struct SeveralOf {
     for (size_t m = 0; m < count; ++m) middles[m] = middle(objects[m]);
     const typename Alone::Pointers from = Alone::pointers(in);
     for (size_t i = 0; i < n; i += L::width) {
-      const typename Alone::Point at = Alone::load(from, i);
+      const Point at = Alone::load(from, i);
       L square = squared_distance(at, middles[0]);
       for (size_t m = 1; m < count; ++m) {
         const L other = squared_distance(at, middles[m]);
         square = Next::join == Join::intersection ? max(square, other) : min(square, other);
       }
-      const L distance = sqrt(square);
-      const L second = std::apply([&](auto... x) { return op.at_distance(distance, x...); }, at);
-      next.template eval<L>(L::load(first + i), second).store(out + i);
+      const L outermost = value_at(op, at, square);
+      L result = L::load(first + i);
+      if constexpr (Selects<Next>) {
+        result = next.template eval<L>(result, outermost);
+      } else if (!all(next.keeps(result, outermost))) {
+        for (size_t m = 0; m < count; ++m)
+          result =
+              next.template eval<L>(result, value_at(op, at, squared_distance(at, middles[m])));
+      }
+      result.store(out + i);
     }
   }
 
@@ -190,16 +206,21 @@ struct SeveralOf {
     return every;
   }
 
+  static L value_at(const Op& op, const Point& at, L square) {
+    const L distance = sqrt(square);
+    return std::apply([&](auto... x) { return op.at_distance(distance, x...); }, at);
+  }
+
   // The steps of `length`.
-  static L squared_distance(const typename Alone::Point& at, const Middle& middle) {
+  static L squared_distance(const Point& at, const Middle& middle) {
     L sum = square(at[0] - L(middle[0]));
     for (size_t k = 1; k < middle.size(); ++k) sum = sum + square(at[k] - L(middle[k]));
     return sum;
   }
 };
 
-/// The kernels of an operation with each of the list Op::FusedWith, minima and maxima that often
-/// take its result as the second input.
+/// The kernels of an operation with each of the list Op::FusedWith, those that often take its
+/// result as the second input.
 template <class Op, class Isa>
 struct FusedOf {
   using Alone = KernelsOf<Op, Isa>;
@@ -219,12 +240,18 @@ struct FusedOf {
 
   template <class Next>
   static constexpr Fused fused() {
-    Fused made{&value<Next>, &KernelsOf<Next, Isa>::value};
-    if constexpr (HasMiddle<Op>) {
+    Fused made{nullptr, &KernelsOf<Next, Isa>::value};
+    // Beside the arcs of a blend too few registers are left: two passes take less time.
+    if constexpr (Selects<Next>) made.value = &value<Next>;
+    if constexpr (HasMiddle<Op>) add_several<Next>(made);
+    return made;
+  }
+  template <class Next>
+  static constexpr void add_several(Fused& made) {
+    if constexpr (SeveralOf<Op, Isa>::template works<Next>) {
       made.several = &SeveralOf<Op, Isa>::template value<Next>;
       made.alike = &SeveralOf<Op, Isa>::alike;
     }
-    return made;
   }
   template <template <class...> class List, class... Next>
   static constexpr std::array<Fused, sizeof...(Next)> make_table(

@@ -91,6 +91,7 @@ struct Fused {
   /// `first`, whose solids are alike.
   using Several = void (*)(const void* const* ops, size_t count, const void* next,
                            const float* const* in, const float* first, float* out, size_t n);
+  /// Null where two passes take as long.
   Value value = nullptr;
   /// The kernel that `next` has alone, by which it is known.
   void (*next)(const void* op, const float* const* in, float* out, size_t n) = nullptr;

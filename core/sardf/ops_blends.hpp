@@ -8,6 +8,8 @@
 //                        bound of its gradient's length where x and y have gradients of at most
 //                        the length `longer` and this scalar product
 //   unite(x, y)          the union, where there is a shorter form with equal results
+//   selects              true where the intersection is one of the two, in every bit
+//   keeps(x, y)          whether it is x, in every bit, with y and with all that is larger
 #pragma once
 
 #include "sardf/op_list.hpp"
@@ -57,6 +59,12 @@ struct UnionOf : BlendOperation<Blend> {
   {
     return Blend::steepness(-x, -y, longer, product);
   }
+  template <class T>
+  auto keeps(T x, T y) const
+    requires requires(const Blend& b) { b.keeps(x, y); }
+  {
+    return Blend::keeps(-x, -y);
+  }
 };
 
 template <class Blend>
@@ -80,12 +88,19 @@ struct DifferenceOf : BlendOperation<Blend> {
   {
     return Blend::steepness(x, -y, longer, -product);
   }
+  template <class T>
+  auto keeps(T x, T y) const
+    requires requires(const Blend& b) { b.keeps(x, y); }
+  {
+    return Blend::keeps(x, -y);
+  }
 };
 
 /// Hard minimum and maximum: sharp creases, exact on one side (sardf paper, 1.3.2).
 struct MinMax {
   static constexpr const char *name = "min_max",
                               *doc = "The smaller field: creases, the distance error is 0.";
+  static constexpr bool selects = true;
   template <class V>
   static void parameters(V&) {}
   double blend_error() const { return 0; }
@@ -128,6 +143,10 @@ struct Smooth {
   double blend_error() const { return k / 4; }
   double gain(Interval, Interval) const { return 1; }
   template <class T>
+  auto keeps(T x, T y) const {
+    return y - x >= T(k);
+  }
+  template <class T>
   T intersection(T x, T y) const {
     const T overlap = max(T(k) - abs(x - y), T(0.0));
     return min(x, y) - square(overlap) * T(1 / (4 * k));
@@ -169,6 +188,5 @@ struct Equivalence {
 
 template <class... Blends>
 using OpsOfBlends = OpList<IntersectionOf<Blends>..., UnionOf<Blends>..., DifferenceOf<Blends>...>;
-using MinMaxOps = OpsOfBlends<MinMax>;
 
 }  // namespace sardf

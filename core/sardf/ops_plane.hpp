@@ -12,7 +12,7 @@ struct PlaneSolid {
   static constexpr Kind kind = Kind::plane;
   static constexpr int arity = 2;
   static constexpr bool distance = true;
-  using FusedWith = MinMaxOps;
+  using FusedWith = JoinOps;
 };
 
 struct Disc : PlaneSolid {

@@ -32,7 +32,8 @@ auto is_fixed(const T& lo, const T& fixed, const T& radius) {
 }
 
 /// Intersection and union that are min and max but where |x - y| < R. There the intersection is
-/// arc(lo, hi, hi - lo).
+/// arc(lo, hi, hi - lo): a function of its own, so that a loop over many values keeps its registers
+/// for what is done everywhere.
 template <class T, class Arc>
 T rounded_min(const T& x, const T& y, const T& R, Arc arc) {
   const T lo = smaller(x, y), hi = larger(x, y), t = hi - lo;
@@ -72,6 +73,10 @@ struct Sardf {
   }
 
   template <class T>
+  auto keeps(T x, T y) const {
+    return y - x >= T(radius);
+  }
+  template <class T>
   T intersection(T x, T y) const {
     return rounded_min(x, y, T(radius), [this](T lo, T hi, T t) { return arc(lo, hi, t); });
   }
@@ -82,7 +87,7 @@ struct Sardf {
 
  private:
   template <class T>
-  T arc(T lo, T hi, T t) const {
+  [[gnu::noinline]] T arc(T lo, T hi, T t) const {
     const T fixed = fixed_arc(lo, t);
     const T rounded = shortcut(is_fixed(lo, fixed, T(radius)), fixed,
                                [&] { return max(growing_arc(lo, hi, t), fixed); });
@@ -127,6 +132,10 @@ struct SardfC1 {
   }
 
   template <class T>
+  auto keeps(T x, T y) const {
+    return y - x >= T(radius);
+  }
+  template <class T>
   T intersection(T x, T y) const {
     return rounded_min(x, y, T(radius), [this](T lo, T hi, T t) { return arc(lo, hi, t); });
   }
@@ -137,7 +146,7 @@ struct SardfC1 {
 
  private:
   template <class T>
-  T arc(T lo, T hi, T t) const {
+  [[gnu::noinline]] T arc(T lo, T hi, T t) const {
     const T fixed =
         lo + (T(0.5) * (t + sqrt(max(T(2 * radius * radius) - square(t), T(0.0)))) - T(radius));
     const T rounded = shortcut(is_fixed(lo, fixed, T(radius)), fixed, [&] {
@@ -196,7 +205,7 @@ struct SardfC1 {
 };
 
 using BlendList = OpList<Sardf, SardfC1, MinMax, RFunction, Smooth>;
-using BlendOps =
-    Joined<OpsOfBlends<Sardf, SardfC1, MinMax, RFunction, Smooth>, OpList<Equivalence>>::type;
+using JoinOps = OpsOfBlends<Sardf, SardfC1, MinMax, RFunction, Smooth>;
+using BlendOps = Joined<JoinOps, OpList<Equivalence>>::type;
 
 }  // namespace sardf

@@ -4,7 +4,7 @@
 
 #include "sardf/frame.hpp"
 #include "sardf/op_list.hpp"
-#include "sardf/ops_blends.hpp"
+#include "sardf/ops_sardf.hpp"
 
 namespace sardf {
 
@@ -12,7 +12,7 @@ struct Solid {
   static constexpr Kind kind = Kind::solid;
   static constexpr int arity = 3;
   static constexpr bool distance = true;
-  using FusedWith = MinMaxOps;
+  using FusedWith = JoinOps;
 };
 
 struct Sphere : Solid {

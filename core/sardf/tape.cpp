@@ -226,10 +226,14 @@ Tape::Tape(const Code& code)
 void Tape::find_pairs(const Code& code, std::span<const uint32_t> last) {
   const Fusion fusion(code, last);
   for (size_t s = 0; s < instructions_.size();) {
-    Instruction& instruction = instructions_[s];
-    instruction.fused = fusion.of(s);
-    if (instruction.fused) instruction.pairs = uint32_t(fusion.pairs(s));
-    s += instruction.fused ? 2 * instruction.pairs : 1;
+    const Fused* const fused = fusion.of(s);
+    const size_t pairs = fused ? fusion.pairs(s) : 0;
+    const bool pays = pairs > 1 || (pairs == 1 && fused->value);
+    if (pays) {
+      instructions_[s].fused = fused;
+      instructions_[s].pairs = uint32_t(pairs);
+    }
+    s += pays ? 2 * pairs : 1;
   }
 }
 

@@ -82,6 +82,16 @@ TEST(Fused, SolidsThatDifferInTheirMiddlesTakeOneCall) {
   }
 }
 
+TEST(Fused, SolidsThatDifferInTheirMiddlesTakeOneCallInBlendsToo) {
+  const std::vector<Field> solids{block(), upright(0), sphere(0), sphere(1), sphere(2)};
+  for (const char* name : {"sardf", "sardf_c1", "smooth"}) {
+    for (const char* operation : {"union", "intersection", "difference"}) {
+      EXPECT_EQ(calls(joined(operation, solids, make_blend(name, {0.5}))), Calls{3}) << name;
+    }
+  }
+  EXPECT_EQ(calls(joined("union", solids, make_blend("r_function", {}))), Calls{});
+}
+
 TEST(Fused, SolidsThatDifferElsewhereTakeCallsOfTheirOwn) {
   const auto cut = [](const Field& a, const Field& b) {
     return calls(joined("difference", {block(), a, b}));
@@ -115,8 +125,7 @@ TEST(Fused, OneCallTakesNoMoreThanItHasRoomFor) {
   EXPECT_EQ(calls(joined("union", many)), (Calls{most_pairs, most_pairs, 3}));
 }
 
-// In the last block, too, which is no whole one, and where a result stands for an output.
-TEST(Fused, GivesTheBitsOfOneAfterTheOther) {
+void expect_the_bits_of_one_after_the_other(const char* name, const BlendPointer& blend) {
   constexpr size_t n = 1000;
   std::mt19937 random(5);
   std::uniform_real_distribution<float> ordinary(-2, 2);
@@ -124,24 +133,31 @@ TEST(Fused, GivesTheBitsOfOneAfterTheOther) {
   for (size_t i = 0; i < 3 * n; ++i) at.push_back(ordinary(random));
   at[30] = std::numeric_limits<float>::quiet_NaN();
   at[60] = std::numeric_limits<float>::infinity();
+  std::vector<Field> solids{block(), bar(), ball(1), ball(-1), upright(0.3, 1.0)};
+  for (int k = 0; k < 40; ++k) solids.push_back(upright(0.1 * k - 2, 2.0, 0.25, 0.375));
+  // All solids are outputs as well: they are evaluated one by one.
+  std::vector<Expression> outputs{joined(name, solids, blend).expression()};
+  for (const Field& solid : solids) outputs.push_back(solid.expression());
+  const Evaluator apart(outputs), whole(outputs[0]);
+  ASSERT_EQ(fused(apart.tape()), 0u);
+  ASSERT_GE(fused(whole.tape()), 42u);
+  std::vector<float> expected(n * outputs.size()), got(n);
+  apart.values(at.data(), n, expected.data());
+  whole.values(at.data(), n, got.data());
+  for (size_t i = 0; i < n; ++i) {
+    const float wanted = expected[i * outputs.size()];
+    EXPECT_TRUE(std::bit_cast<uint32_t>(got[i]) == std::bit_cast<uint32_t>(wanted) ||
+                (std::isnan(got[i]) && std::isnan(wanted)))
+        << name << ' ' << i << ": " << got[i] << ", " << wanted;
+  }
+}
+
+// In the last block, too, which is no whole one, and where a result stands for an output.
+TEST(Fused, GivesTheBitsOfOneAfterTheOther) {
   for (const char* name : {"union", "intersection", "difference"}) {
-    std::vector<Field> solids{block(), bar(), ball(1), ball(-1), upright(0.3, 1.0)};
-    for (int k = 0; k < 40; ++k) solids.push_back(upright(0.1 * k - 2, 2.0, 0.25, 0.375));
-    // All solids are outputs as well: they are evaluated one by one.
-    std::vector<Expression> outputs{joined(name, solids).expression()};
-    for (const Field& solid : solids) outputs.push_back(solid.expression());
-    const Evaluator apart(outputs), whole(outputs[0]);
-    ASSERT_EQ(fused(apart.tape()), 0u);
-    ASSERT_EQ(fused(whole.tape()), solids.size() - 1);
-    std::vector<float> expected(n * outputs.size()), got(n);
-    apart.values(at.data(), n, expected.data());
-    whole.values(at.data(), n, got.data());
-    for (size_t i = 0; i < n; ++i) {
-      const float wanted = expected[i * outputs.size()];
-      EXPECT_TRUE(std::bit_cast<uint32_t>(got[i]) == std::bit_cast<uint32_t>(wanted) ||
-                  (std::isnan(got[i]) && std::isnan(wanted)))
-          << name << ' ' << i << ": " << got[i] << ", " << wanted;
-    }
+    expect_the_bits_of_one_after_the_other(name, min_max_blend());
+    for (const char* blend : {"sardf", "sardf_c1", "smooth"})
+      expect_the_bits_of_one_after_the_other(name, make_blend(blend, {0.25}));
   }
 }
 

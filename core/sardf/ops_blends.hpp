@@ -16,6 +16,12 @@
 
 namespace sardf {
 
+/// The width of a band for `keeps`: nothing is as far apart as NaN, which stands for one that
+/// single precision takes for 0 or for infinite.
+inline double plain_width(double width) {
+  return width > 1e-30 && width < 1e30 ? width : std::nan("");
+}
+
 template <class Blend>
 struct BlendOperation : Blend {
   static constexpr Kind kind = Kind::internal;
@@ -144,7 +150,7 @@ struct Smooth {
   double gain(Interval, Interval) const { return 1; }
   template <class T>
   auto keeps(T x, T y) const {
-    return y - x >= T(k);
+    return y - x >= T(plain_width(k));
   }
   template <class T>
   T intersection(T x, T y) const {

@@ -28,6 +28,24 @@ enum class InstructionSet { baseline, avx2, avx512 };
 InstructionSet instruction_set();
 std::string instruction_set_name(InstructionSet set);
 
+/// The inputs of an operation, lanes by lanes.
+template <class L, int arity>
+struct InputsOf {
+  using Pointers = std::array<const float*, arity>;
+  using Point = std::array<L, arity>;
+
+  static Pointers pointers(const float* const* in) {
+    Pointers from;
+    for (int k = 0; k < arity; ++k) from[k] = in[k];
+    return from;
+  }
+  static Point load(const Pointers& from, size_t i) {
+    Point at;
+    for (int k = 0; k < arity; ++k) at[k] = L::load(from[k] + i);
+    return at;
+  }
+};
+
 /// The kernel of a family of operations. Op::Family is Op itself or its base, and has
 ///   static constexpr int arity, together;     how many operations are evaluated by one call
 ///   template <class T, class Put>
@@ -37,6 +55,7 @@ std::string instruction_set_name(InstructionSet set);
 template <class Family, class Isa>
 struct TogetherOf {
   using L = Lanes<Isa>;
+  using Inputs = InputsOf<L, Family::arity>;
   static constexpr int size = Family::together;
   static_assert(size <= most_together);
   // Objects of the family are read as its own.
@@ -45,17 +64,15 @@ struct TogetherOf {
   static void value(const void* const* objects, const float* const* in, float* const* out,
                     size_t n) {
     Family ops[size];
-    std::array<const float*, Family::arity> from;
+    const typename Inputs::Pointers from = Inputs::pointers(in);
     std::array<float*, size> to;
-    for (int k = 0; k < Family::arity; ++k) from[k] = in[k];
     for (int k = 0; k < size; ++k) {
       ops[k] = *static_cast<const Family*>(objects[k]);
       to[k] = out[k];
     }
     for (size_t i = 0; i < n; i += L::width) {
-      std::array<L, Family::arity> at;
-      for (int k = 0; k < Family::arity; ++k) at[k] = L::load(from[k] + i);
-      Family::results(ops, at, [&](const L& result, size_t k) { result.store(to[k] + i); });
+      Family::results(ops, Inputs::load(from, i),
+                      [&](const L& result, size_t k) { result.store(to[k] + i); });
     }
   }
 
@@ -77,9 +94,12 @@ struct FusedOf;
 template <class Op>
 concept HasMiddle = requires(const Op& op) { op.middle(); };
 
-/// Operations of two values whose result is one of them, in every bit.
+/// Operations of two values whose result is one of them, in every bit; and those that tell where it
+/// is the first one (ops_blends.hpp).
 template <class Op>
 concept Selects = requires { Op::selects; };
+template <class Op, class L>
+concept Keeps = requires(const Op& op, L x) { op.keeps(x, x); };
 
 template <class Op, class Isa>
 struct KernelsOf {
@@ -88,27 +108,16 @@ struct KernelsOf {
   // A copy stays in registers, since results cannot be written to it; so do those of pointers.
   using Own = std::conditional_t<std::is_trivially_copyable_v<Op>, Op, const Op&>;
 
-  using Pointers = std::array<const float*, arity>;
-  using Point = std::array<L, arity>;
+  using Inputs = InputsOf<L, arity>;
 
-  static Pointers pointers(const float* const* in) {
-    Pointers from;
-    for (int k = 0; k < arity; ++k) from[k] = in[k];
-    return from;
-  }
-  static Point load(const Pointers& from, size_t i) {
-    Point at;
-    for (int k = 0; k < arity; ++k) at[k] = L::load(from[k] + i);
-    return at;
-  }
-  static L call(const Op& op, const Point& at) {
+  static L call(const Op& op, const typename Inputs::Point& at) {
     return std::apply([&](auto... x) { return op.template eval<L>(x...); }, at);
   }
 
   static void value(const void* object, const float* const* in, float* out, size_t n) {
     const Own op = *static_cast<const Op*>(object);
-    const Pointers from = pointers(in);
-    for (size_t i = 0; i < n; i += L::width) call(op, load(from, i)).store(out + i);
+    const typename Inputs::Pointers from = Inputs::pointers(in);
+    for (size_t i = 0; i < n; i += L::width) call(op, Inputs::load(from, i)).store(out + i);
   }
 
   static void partials(const void* object, const float* const* in, float* out,
@@ -151,13 +160,10 @@ struct KernelsOf {
 /// this one, it does so for the others. In every bit it is what one after the other gives.
 template <class Op, class Isa>
 struct SeveralOf {
-  using Alone = KernelsOf<Op, Isa>;
-  using L = typename Alone::L;
-  using Point = typename Alone::Point;
+  using L = Lanes<Isa>;
+  using Inputs = InputsOf<L, Op::arity>;
+  using Point = typename Inputs::Point;
   using Middle = std::array<float, std::tuple_size_v<decltype(std::declval<Op>().middle())>>;
-
-  template <class Next>
-  static constexpr bool works = Selects<Next> || requires(Next next, L x) { next.keeps(x, x); };
 
   template <class Next>
   static void value(const void* const* objects, size_t count, const void* next_object,
@@ -166,9 +172,9 @@ struct SeveralOf {
     const Next next = *static_cast<const Next*>(next_object);
     std::array<Middle, most_pairs> middles;
     for (size_t m = 0; m < count; ++m) middles[m] = middle(objects[m]);
-    const typename Alone::Pointers from = Alone::pointers(in);
+    const typename Inputs::Pointers from = Inputs::pointers(in);
     for (size_t i = 0; i < n; i += L::width) {
-      const Point at = Alone::load(from, i);
+      const Point at = Inputs::load(from, i);
       L square = squared_distance(at, middles[0]);
       for (size_t m = 1; m < count; ++m) {
         const L other = squared_distance(at, middles[m]);
@@ -225,15 +231,16 @@ template <class Op, class Isa>
 struct FusedOf {
   using Alone = KernelsOf<Op, Isa>;
   using L = typename Alone::L;
+  using Inputs = typename Alone::Inputs;
 
   template <class Next>
   static void value(const void* object, const void* next_object, const float* const* in,
                     const float* first, float* out, size_t n) {
     const typename Alone::Own op = *static_cast<const Op*>(object);
     const Next next = *static_cast<const Next*>(next_object);
-    const typename Alone::Pointers from = Alone::pointers(in);
+    const typename Inputs::Pointers from = Inputs::pointers(in);
     for (size_t i = 0; i < n; i += L::width) {
-      const L second = Alone::call(op, Alone::load(from, i));
+      const L second = Alone::call(op, Inputs::load(from, i));
       next.template eval<L>(L::load(first + i), second).store(out + i);
     }
   }
@@ -243,15 +250,11 @@ struct FusedOf {
     Fused made{nullptr, &KernelsOf<Next, Isa>::value};
     // Beside the arcs of a blend too few registers are left: two passes take less time.
     if constexpr (Selects<Next>) made.value = &value<Next>;
-    if constexpr (HasMiddle<Op>) add_several<Next>(made);
-    return made;
-  }
-  template <class Next>
-  static constexpr void add_several(Fused& made) {
-    if constexpr (SeveralOf<Op, Isa>::template works<Next>) {
+    if constexpr (HasMiddle<Op> && (Selects<Next> || Keeps<Next, L>)) {
       made.several = &SeveralOf<Op, Isa>::template value<Next>;
       made.alike = &SeveralOf<Op, Isa>::alike;
     }
+    return made;
   }
   template <template <class...> class List, class... Next>
   static constexpr std::array<Fused, sizeof...(Next)> make_table(

@@ -16,10 +16,11 @@
 
 namespace sardf {
 
-/// The width of a band for `keeps`: nothing is as far apart as NaN, which stands for one that
-/// single precision takes for 0 or for infinite.
-inline double plain_width(double width) {
-  return width > 1e-30 && width < 1e30 ? width : std::nan("");
+/// Whether y lies above x by the width of a band, for `keeps`. By NaN nothing does: it stands for a
+/// width that single precision takes for 0 or for infinite.
+template <class T>
+auto is_above_band(T x, T y, double width) {
+  return y - x >= T(width > 1e-30 && width < 1e30 ? width : std::nan(""));
 }
 
 template <class Blend>
@@ -150,7 +151,7 @@ struct Smooth {
   double gain(Interval, Interval) const { return 1; }
   template <class T>
   auto keeps(T x, T y) const {
-    return y - x >= T(plain_width(k));
+    return is_above_band(x, y, k);
   }
   template <class T>
   T intersection(T x, T y) const {

@@ -74,7 +74,7 @@ struct Sardf {
 
   template <class T>
   auto keeps(T x, T y) const {
-    return y - x >= T(plain_width(radius));
+    return is_above_band(x, y, radius);
   }
   template <class T>
   T intersection(T x, T y) const {
@@ -133,7 +133,7 @@ struct SardfC1 {
 
   template <class T>
   auto keeps(T x, T y) const {
-    return y - x >= T(plain_width(radius));
+    return is_above_band(x, y, radius);
   }
   template <class T>
   T intersection(T x, T y) const {

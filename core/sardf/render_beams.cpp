@@ -29,7 +29,7 @@ double step_in_ball(const Beam& beam, double depth, double radius) {
   const Spread& w = beam.spread;
   const double wide = w.at(depth);
   if (!(radius > wide)) return 0;
-  const double square = dot(beam.line.along, beam.line.along) + w.growth * w.growth + 2 * w.lean;
+  const double square = w.longest_square(beam.line.along);
   const double half = depth * (w.growth * w.growth + w.lean);
   const double rest = (radius - wide) * (radius + wide);
   return rest / (half + std::sqrt(half * half + square * rest));
@@ -114,14 +114,14 @@ std::optional<Ray> ray_at(const Subject& subject, const Beam& beam, int x, int y
 }
 
 // The most that places in single precision are off the rays' true ones.
-double misplacement(const Rays& rays, const BoundingBox& bounds, int width, int height) {
+double misplacement(const Rays& rays, const BoundingBox& bounds, const Stretch& depths, int width,
+                    int height) {
   double steepest = 0;
   for (const double x : {0, width}) {
     for (const double y : {0, height})
       steepest = std::max(steepest, norm(rays.through(x, y).along));
   }
   // Rays that meet the box begin no farther from it than they go on.
-  const Stretch depths = rays.depths(bounds);
   const double way = 0.5 * bounds.diagonal() + 2 * (depths.end - depths.begin) * steepest;
   // Right and down are perpendicular; together they are at most sqrt(2) times the corner's.
   const Spread square = rays.spread(0.5 * width, 0.5 * height, RaySquare::edge);
@@ -184,7 +184,7 @@ RayFrame frame_of_places(const Rays& rays, const BoundingBox& bounds, int width,
   const Stretch depths = rays.depths(bounds);
   frame.begin = depths.begin;
   frame.range = float((depths.end - depths.begin) * (1 + depth_slack));
-  frame.misplaced = float(misplacement(rays, bounds, width, height) * (1 + depth_slack));
+  frame.misplaced = float(misplacement(rays, bounds, depths, width, height) * (1 + depth_slack));
   return frame;
 }
 

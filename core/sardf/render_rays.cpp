@@ -33,9 +33,7 @@ Spread Rays::spread(double x, double y, double edge) const {
 }
 
 double Rays::shortest_step(double x, double y, double edge) const {
-  const Vec3 along = through(x, y).along;
-  const Spread corner = spread(x, y, edge);
-  return 1 / std::sqrt(dot(along, along) + 2 * corner.lean + corner.growth * corner.growth);
+  return 1 / std::sqrt(spread(x, y, edge).longest_square(through(x, y).along));
 }
 
 Stretch Rays::depths(const BoundingBox& box) const {

@@ -17,6 +17,10 @@ struct Line {
 struct Spread {
   double constant = 0, growth = 0, lean = 0;
   double at(double t) const { return constant + t * growth; }
+  /// The square of a corner ray's `along`, at most; `along` is the middle one's.
+  double longest_square(const Vec3& along) const {
+    return dot(along, along) + growth * growth + 2 * lean;
+  }
 };
 
 /// The part of a line with t >= 0 that lies in the box; begin > end: none.

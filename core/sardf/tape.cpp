@@ -142,10 +142,13 @@ void find_together(std::vector<Instruction>& instructions) {
   }
 }
 
+// The value that is the first step's result.
+uint32_t first_result(const Code& code) { return uint32_t(3 + code.constants.size()); }
+
 // The steps that one pass evaluates with the next one.
 class Fusion {
  public:
-  // last[s] is the step that uses the result of step s last; values from `first` on are results.
+  // last[s] is the step that uses the result of step s last.
   Fusion(const Code& code, std::span<const uint32_t> last) : code_(code), last_(last) {}
 
   // How step s is evaluated with the next; null where it is not.
@@ -175,7 +178,7 @@ class Fusion {
   }
 
   const Kernels& kernels(size_t s) const { return code_.steps[s].operation->kernels(); }
-  uint32_t result(size_t s) const { return uint32_t(3 + code_.constants.size() + s); }
+  uint32_t result(size_t s) const { return first_result(code_) + uint32_t(s); }
 
   const Code& code_;
   std::span<const uint32_t> last_;
@@ -189,7 +192,7 @@ uint64_t next_number() {
 // The step that uses each result last.
 constexpr uint32_t to_the_end = UINT32_MAX;
 std::vector<uint32_t> last_uses(const Code& code) {
-  const uint32_t first = uint32_t(3 + code.constants.size());
+  const uint32_t first = first_result(code);
   std::vector<uint32_t> last(code.steps.size(), 0);
   for (uint32_t s = 0; s < code.steps.size(); ++s) {
     for (int k = 0; k < code.steps[s].operation->info().arity; ++k) {

@@ -155,20 +155,30 @@ TEST(InstructionSets, OperationsTogetherGiveTheBitsOfEach) {
   }
 }
 
+/// The result of `next` for `first` and that of `op` there.
+Row one_after_the_other(InstructionSet set, const Operation& op, const Operation& next,
+                        const float* const* at, const Row& first) {
+  Row second, out;
+  listed_kernels(set, op.info().name)->value(op.object(), at, second.data(), points);
+  const std::array<const float*, max_arity> both{first.data(), second.data()};
+  listed_kernels(set, next.info().name)->value(next.object(), both.data(), out.data(), points);
+  return out;
+}
+
+const Fused& fused_kernels(InstructionSet set, const Operation& op, const Operation& next) {
+  return *listed_kernels(set, op.info().name)->fused_with(*listed_kernels(set, next.info().name));
+}
+
 void expect_fused_gives_the_bits_of_each(InstructionSet set, const Operation& op,
                                          const Operation& next, Random& r) {
-  const Kernels& kernels = *listed_kernels(set, op.info().name);
-  const Kernels& next_kernels = *listed_kernels(set, next.info().name);
   const std::array<Row, max_arity> in = arguments(r);
   const Row& first = in[max_arity - 1];
   std::array<const float*, max_arity> at{};
   for (size_t k = 0; k < size_t(op.info().arity); ++k) at[k] = in[k].data();
-  Row second, expected, got;
-  kernels.value(op.object(), at.data(), second.data(), points);
-  const std::array<const float*, max_arity> both{first.data(), second.data()};
-  next_kernels.value(next.object(), both.data(), expected.data(), points);
-  kernels.fused_with(next_kernels)
-      ->value(op.object(), next.object(), at.data(), first.data(), got.data(), points);
+  const Row expected = one_after_the_other(set, op, next, at.data(), first);
+  Row got;
+  fused_kernels(set, op, next)
+      .value(op.object(), next.object(), at.data(), first.data(), got.data(), points);
   for (size_t i = 0; i < points; ++i) {
     EXPECT_TRUE(same(got[i], expected[i]))
         << instruction_set_name(set) << ", " << op.info().name << ", " << next.info().name << ": "
@@ -221,9 +231,7 @@ std::vector<OperationPointer> alike(int kind, size_t count, Random& r) {
 
 void expect_several_give_the_bits_of_each(InstructionSet set, const Operation& next,
                                           const std::vector<OperationPointer>& ops, Random& r) {
-  const Kernels &kernels = *listed_kernels(set, ops[0]->info().name),
-                &next_kernels = *listed_kernels(set, next.info().name);
-  const Fused& fused = *kernels.fused_with(next_kernels);
+  const Fused& fused = fused_kernels(set, *ops[0], next);
   std::array<Row, max_arity> in = arguments(r);
   // A blend's result before lies in its band, or near it.
   if (r.chance(0.5)) {
@@ -235,11 +243,7 @@ void expect_several_give_the_bits_of_each(InstructionSet set, const Operation& n
   for (const OperationPointer& op : ops) {
     ASSERT_TRUE(fused.alike(ops[0]->object(), op->object()));
     objects.push_back(op->object());
-    const Row first = expected;
-    Row second;
-    kernels.value(op->object(), at.data(), second.data(), points);
-    const std::array<const float*, max_arity> both{first.data(), second.data()};
-    next_kernels.value(next.object(), both.data(), expected.data(), points);
+    expected = one_after_the_other(set, *op, next, at.data(), expected);
   }
   fused.several(objects.data(), objects.size(), next.object(), at.data(), in[3].data(), got.data(),
                 points);

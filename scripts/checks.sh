@@ -39,6 +39,14 @@ both_halves() {
   return $status
 }
 
+# sanitized ARGUMENT...: the same with address and undefined sanitizers. Of each piece of memory only
+# the ten innermost frames are told: of the thirty that are usual, boxes halved again and again have
+# millions that differ, and the sanitizer keeps every stack it ever saw.
+sanitized() {
+  ASAN_OPTIONS=malloc_context_size=10 LSAN_OPTIONS=suppressions=tests/leaks_elsewhere.txt \
+    both_halves build/asan/tests/cpp/sardf_tests --gtest_brief=1 "$@"
+}
+
 # limited_pytest SECONDS ARGUMENT...: then it is interrupted, so that it prints what it knows, and
 # killed a minute later.
 limited_pytest() {
